@@ -34,6 +34,15 @@ Json document_of(const journal::Learned& learned) {
 
 double learned_of(double now, double prior) { return now - prior; }
 
+void show_couplings(const std::vector<journal::LearnedCoupling>& all) {
+  if (all.empty()) return;
+  fmt::print("\n{:<28} {:<28} {:>8} {:>8} {:>10}\n", "when this was resolved", "this cleared",
+             "yes", "no", "unaffected");
+  for (const journal::LearnedCoupling& each : all)
+    fmt::print("{:<28} {:<28} {:>8.6g} {:>8.6g} {:>10.6g}\n", each.cause, each.effect,
+               each.coupling.cleared, each.coupling.stayed, each.coupling.spared);
+}
+
 void show_latencies(const std::vector<journal::LearnedLatency>& all) {
   std::string late;
   std::string transient;
@@ -62,8 +71,9 @@ int show(const BeliefsOptions& options) {
     fmt::print("{}\n", to_line(document_of(*learned)));
     return kOk;
   }
+  std::erase_if(learned->couplings, [](const auto& each) { return each.coupling == Coupling(); });
   std::erase_if(learned->latencies, [](const auto& each) { return each.count == 0; });
-  if (learned->beliefs.empty() && learned->latencies.empty()) {
+  if (learned->is_empty()) {
     fmt::print(
         "nothing was learned yet: the outcome of a repair counts after it has held for a minute "
         "(culprit run --healthy)\n");
@@ -76,12 +86,7 @@ int show(const BeliefsOptions& options) {
                100 * each.prior.mean().value, 100 * each.belief.mean().value,
                learned_of(each.belief.alpha, each.prior.alpha),
                learned_of(each.belief.beta, each.prior.beta));
-  if (!learned->couplings.empty())
-    fmt::print("\n{:<28} {:<28} {:>8} {:>8}\n", "when this was resolved", "this cleared", "yes",
-               "no");
-  for (const journal::LearnedCoupling& each : learned->couplings)
-    fmt::print("{:<28} {:<28} {:>8.6g} {:>8.6g}\n", each.cause, each.effect, each.coupling.cleared,
-               each.coupling.stayed);
+  show_couplings(learned->couplings);
   show_latencies(learned->latencies);
   return kOk;
 }

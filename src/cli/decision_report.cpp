@@ -19,10 +19,16 @@ std::string text_of(const Json& json, const char* key) {
   return escape_controls(journal::text_of(json, key));
 }
 
-bool is_decision(const Entry& entry, const Json& body) {
+// A strategy was chosen, be it begun or held back by the governor.
+bool is_choice(const Json& body) {
   const std::string type = text_of(body, "type");
+  return type == words_of<StrategyChosen>().name ||
+         (type == words_of<ActionHeldBack>().name && body.contains("candidates"));
+}
+
+bool is_decision(const Entry& entry, const Json& body) {
   return entry.kind == journal::kind::kEvent &&
-         (type == words_of<StrategyChosen>().name || type == words_of<FailureHeldBack>().name);
+         (is_choice(body) || text_of(body, "type") == words_of<FailureHeldBack>().name);
 }
 
 // The latest decision of the rule that row `id` is about, not after it.
@@ -42,8 +48,8 @@ Expected<std::optional<Entry>> decision_at(const journal::Reader& journal, std::
     auto row = journal.newest(journal::kind::kEvent, before);
     if (!row || !*row) return row;
     const Json body = parse_json((*row)->body);
-    const bool fits = id == 0 ? text_of(body, "type") == words_of<StrategyChosen>().name
-                              : is_decision(**row, body) && text_of(body, "rule") == rule;
+    const bool fits =
+        id == 0 ? is_choice(body) : is_decision(**row, body) && text_of(body, "rule") == rule;
     if (fits) return row;
     before = (*row)->id;
   }

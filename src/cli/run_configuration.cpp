@@ -29,6 +29,15 @@ std::string key_of(const CLI::Option& option) {
   return option.get_lnames().front();
 }
 
+// A file or a named pipe; the pipe of "<(...)" in a shell has no name that another user could replace.
+bool can_be_changed(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  const bool is_own =
+      path == "/dev/stdin" || path.starts_with("/dev/fd/") || path.starts_with("/proc/self/fd/");
+  return is_regular_file(status) || (is_fifo(status) && !is_own);
+}
+
 bool is_flag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
 
 // The line of the file that gives `key`; 0: none does.
@@ -170,9 +179,7 @@ Expected<RunConfiguration> with_configuration(std::vector<std::string> words) {
   }
   RunConfiguration out{std::move(words), ""};
   if (!options.config.empty()) {
-    // A pipe has no name that others could replace.
-    std::error_code error;
-    if (std::filesystem::is_regular_file(options.config, error)) {
+    if (can_be_changed(options.config)) {
       if (auto trusted = live::trust_rules(options.config); !trusted) return Error{trusted.error()};
     }
     auto text = read_text(options.config);

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sys/stat.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -55,6 +56,15 @@ TEST_F(RunConfigurationFile, IsOneThatNobodyElseCanChange) {
   EXPECT_THAT(
       error_of("rules = \"my.rules\"\n"),
       HasSubstr("another user could change it: " + file_ + " is writable by others; chmod"));
+}
+
+// Reading it would wait for that user.
+TEST_F(RunConfigurationFile, IsNoPipeThatOthersCanChange) {
+  ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
+  ASSERT_EQ(chmod(file_.c_str(), 0666), 0);
+  const auto result = with_configuration({"run", "--config", file_});
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error(), HasSubstr("another user could change it"));
 }
 
 TEST_F(RunConfigurationFile, GivesWayToTheCommandLine) {

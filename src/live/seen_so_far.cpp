@@ -166,7 +166,7 @@ std::vector<Observation> SeenSoFar::observations() const {
   for (const Entry* entry : entries) {
     all.push_back(entry->observation);
     // Samples that were lost on the way before it belong to an unknown rhythm.
-    if (auto* sample = std::get_if<SampleArrived>(&all.back().what)) sample->published = 1;
+    if (auto* sample = std::get_if<SampleArrived>(&all.back().what)) *sample = {sample->topic};
   }
   return all;
 }

@@ -69,7 +69,8 @@ Answer beliefs(Hub& hub) {
     document["couplings"].push_back({{"cause", rules[cause]["name"]},
                                      {"effect", rules[effect]["name"]},
                                      {"cleared", each[2]},
-                                     {"stayed", each[3]}});
+                                     {"stayed", each[3]},
+                                     {"spared", each[4]}});
   }
   for (const Json& each : state.body["latencies"]) {
     const auto rule = each[0].get<std::size_t>();

@@ -160,8 +160,8 @@ Json couplings_to_json(const Knowledge& knowledge) {
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     for (const Couplings::Learned& each : knowledge.couplings.of(RuleId(r))) {
       if (each.coupling == Coupling()) continue;
-      list.push_back(
-          Json::array({each.cause.index, r, each.coupling.cleared, each.coupling.stayed}));
+      list.push_back(Json::array({each.cause.index, r, each.coupling.cleared, each.coupling.stayed,
+                                  each.coupling.spared}));
     }
   }
   return list;

@@ -446,13 +446,13 @@ TEST_F(Routes, ExportWhatWasLearned) {
   hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "strategies": [
       {"name": "s", "prior": [9, 1]}, {"name": "t", "prior": [5, 5]}]}]})");
   hub.publish(Kind::kState, R"({"beliefs": [[3, 7], [5, 5]], "priors": [[2, 7], [5, 5]],
-      "couplings": [[0, 0, 2, 1]], "latencies": [[0, 3, 0.5, 2.25]]})");
+      "couplings": [[0, 0, 2, 1, 6.5]], "latencies": [[0, 3, 0.5, 2.25]]})");
   const Json learned = ask("get /api/beliefs").body;
   EXPECT_EQ(to_line(learned["beliefs"]),
             R"([{"rule":"R","strategy":"s","belief":[3,7],"prior":[2,7]}])")
       << "from what it began, which a fleet may have told";
   EXPECT_EQ(to_line(learned["couplings"]),
-            R"([{"cause":"R","effect":"R","cleared":2,"stayed":1}])");
+            R"([{"cause":"R","effect":"R","cleared":2,"stayed":1,"spared":6.5}])");
   EXPECT_EQ(to_line(learned["latencies"]),
             R"([{"rule":"R","count":3,"least_s":0.5,"most_s":2.25}])");
 }

@@ -8,6 +8,7 @@
 #include "replay/curves.h"
 #include "web/aside.h"
 #include "web/calls.h"
+#include "web/replay_of_curves.h"
 
 namespace culprit::web {
 namespace {
@@ -84,19 +85,8 @@ Answer answer_past(const Json& body, const std::filesystem::path& journal, Mutex
   if (!replaying.try_lock())
     return refuse(409, "another replay is going on; ask again in a moment");
   const MutexLock lock(replaying, std::adopt_lock);
-  const auto ago = [&](double clock) {
-    return std::to_string(static_cast<std::int64_t>(std::max(0.0, now - clock) * 1000)) + "ms";
-  };
-  std::vector<std::string> command = {(own_folder() / "culprit").string(),
-                                      "replay",
-                                      journal.string(),
-                                      "--json",
-                                      "--since",
-                                      ago(from),
-                                      "--until",
-                                      ago(to)};
-  // In one word: a name that begins with hyphens is no option.
-  for (const std::string& name : *names) command.push_back("--curve=" + name);
+  std::vector<std::string> command =
+      replay_of_curves(own_folder() / "culprit", journal, now - from, now - to, *names);
   const auto folder = TemporaryFolder::make("aside");
   if (!folder) return refuse(503, folder.error());
   const auto read = run_aside(std::move(command), *folder, kMostSecondsOfCurves);

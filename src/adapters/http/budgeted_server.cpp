@@ -47,16 +47,29 @@ void name_of(int socket, int (*ask)(int, sockaddr*, socklen_t*), std::string& ip
 }
 
 class Connection final : public httplib::Stream {
+  using For = WaitingClients::For;
+
+  template <class Step>
+  auto while_waiting(For what, Clock::time_point since, Step step) const {
+    client_.waits(what, since);
+    const auto result = step();
+    client_.waits(For::kNothing);
+    return result;
+  }
+
  public:
   // `tls`: null: it is not encrypted.
-  Connection(int socket, const ConnectionBudget& budget, TlsConnection* tls)
-      : socket_(socket), budget_(budget), tls_(tls) {}
+  Connection(int socket, const ConnectionBudget& budget, TlsConnection* tls,
+             WaitingClients::Connection& client)
+      : socket_(socket), budget_(budget), tls_(tls), client_(client) {}
 
   // Whether another request comes. Its budget begins.
   bool begins_request() {
     const bool has_some = at_ < end_ || (tls_ != nullptr && tls_->has_pending());
+    client_.begin_request();
     if (!has_some && !wait_for(socket_, POLLIN, budget_.idle)) return false;
     begun_ = Clock::now();
+    client_.waits(For::kRequest, begun_);
     deadline_ = begun_ + budget_.header;
     header_ = body_ = 0;
     line_ends_ = 0;
@@ -67,10 +80,13 @@ class Connection final : public httplib::Stream {
     return at_ < end_ || (tls_ != nullptr && tls_->has_pending()) ||
            wait_for(socket_, POLLIN, deadline_ - Clock::now());
   }
-  bool is_writable() const override { return wait_for(socket_, POLLOUT, budget_.write); }
+  bool is_writable() const override {
+    return while_waiting(For::kAnswer, Clock::now(),
+                         [this] { return wait_for(socket_, POLLOUT, budget_.write); });
+  }
 
   ssize_t read(char* to, std::size_t size) override {
-    if (at_ == end_ && !fill()) return is_over_ ? 0 : -1;
+    if (at_ == end_ && !fill_for_request()) return is_over_ ? 0 : -1;
     size = std::min(size, end_ - at_);
     // While the header is read, no more than to its end, for the bytes after it count as the body.
     if (line_ends_ < kEndOfHeader.size()) size = 1;
@@ -84,16 +100,21 @@ class Connection final : public httplib::Stream {
     if (line_ends_ < kEndOfHeader.size()) {
       const char c = buffer_[at_];
       line_ends_ = c == kEndOfHeader[line_ends_] ? line_ends_ + 1 : (c == '\r' ? 1 : 0);
-      if (line_ends_ == kEndOfHeader.size()) deadline_ = begun_ + budget_.request;
+      if (line_ends_ == kEndOfHeader.size()) {
+        deadline_ = begun_ + budget_.request;
+        client_.waits(For::kNothing);
+      }
     }
     at_ += size;
     return static_cast<ssize_t>(size);
   }
 
   ssize_t write(const char* bytes, std::size_t size) override {
-    if (tls_ != nullptr) return tls_->write(bytes, size, budget_.write);
-    if (!is_writable()) return -1;
-    return send(socket_, bytes, size, MSG_NOSIGNAL);
+    return while_waiting(For::kAnswer, Clock::now(), [&]() -> ssize_t {
+      if (tls_ != nullptr) return tls_->write(bytes, size, budget_.write);
+      if (!wait_for(socket_, POLLOUT, budget_.write)) return -1;
+      return send(socket_, bytes, size, MSG_NOSIGNAL);
+    });
   }
 
   void get_remote_ip_and_port(std::string& ip, int& port) const override {
@@ -106,6 +127,11 @@ class Connection final : public httplib::Stream {
 
  private:
   static constexpr std::string_view kEndOfHeader = "\r\n\r\n";
+
+  bool fill_for_request() {
+    if (line_ends_ < kEndOfHeader.size()) return fill();  // is waited for since it began
+    return while_waiting(For::kRequest, begun_, [this] { return fill(); });
+  }
 
   bool fill() {
     if (tls_ == nullptr && !is_readable()) return false;
@@ -124,6 +150,7 @@ class Connection final : public httplib::Stream {
   const int socket_;
   const ConnectionBudget& budget_;
   TlsConnection* const tls_;
+  WaitingClients::Connection& client_;
   std::array<char, 4096> buffer_;
   std::size_t at_ = 0;
   std::size_t end_ = 0;
@@ -136,6 +163,15 @@ class Connection final : public httplib::Stream {
 };
 
 thread_local bool refuses_here = false;
+thread_local WaitingClients::Connection* served_here = nullptr;
+
+// While one lives, this thread serves the connection.
+class Serves {
+ public:
+  explicit Serves(WaitingClients::Connection& connection) { served_here = &connection; }
+  ~Serves() { served_here = nullptr; }
+  Serves(const Serves&) = delete;
+};
 
 constexpr const char* kTakes = "Accept-Encoding";
 constexpr const char* kTakesGzip = "Culprit-Takes-Gzip";  // in its place, for httplib not to see it
@@ -159,6 +195,10 @@ bool is_of_own_user(int socket) {
 RefusesConnections::RefusesConnections() { refuses_here = true; }
 RefusesConnections::~RefusesConnections() { refuses_here = false; }
 
+void spare_this_request() {
+  if (served_here != nullptr) served_here->spare();
+}
+
 bool takes_gzip(const httplib::Request& request) { return request.has_header(kTakesGzip); }
 
 // A connection for which memory runs out ends; the others, and the server, go on.
@@ -176,11 +216,15 @@ bool BudgetedServer::process_and_close_socket(socket_t socket) {
   return is_well;
 }
 
+void BudgetedServer::let_wait(int connections) { ::listen(svr_sock_, connections); }
+
 bool BudgetedServer::serve(socket_t socket) {
+  WaitingClients::Connection client(waiting_, socket);
+  const Serves serves(client);
   std::unique_ptr<TlsConnection> tls;
   if (tls_ != nullptr) tls = TlsConnection::accept(*tls_, socket, budget_.request);
   if (tls_ != nullptr && tls == nullptr) return false;
-  Connection connection(socket, budget_, tls.get());
+  Connection connection(socket, budget_, tls.get(), client);
   bool is_well = clients_ == Clients::kAny || is_of_own_user(socket);
   for (int left = is_well ? budget_.requests : 0; left > 0 && svr_sock_ != INVALID_SOCKET; --left) {
     if (!connection.begins_request()) break;

@@ -3,7 +3,8 @@
 // httplib itself keeps every header that comes, however many and however long a line is, and waits
 // again for each byte. Here the bytes of a connection are counted before they are parsed: so many
 // bytes of headers, so many of a body, so much time for the headers, and so much for both. A connection that exceeds them is
-// closed. A request that is only begun keeps one of the few threads from others, so its headers have little time.
+// closed. A request that is only begun keeps one of the few threads from others, so its headers have little time. It ends at
+// once if another connection needs the thread (waiting_clients.h).
 //
 // Nor does it compress answers: httplib would use brotli at its slowest if the browser accepts
 // that, and the incidents of a day came after seconds. takes_gzip() says whether the client can
@@ -18,6 +19,7 @@
 #include <utility>
 
 #include "http/tls.h"
+#include "http/waiting_clients.h"
 
 namespace culprit::web {
 
@@ -43,6 +45,9 @@ class RefusesConnections {
   RefusesConnections(const RefusesConnections&) = delete;
 };
 
+// The request that a BudgetedServer serves on this thread is never ended for another: its client has shown a token.
+void spare_this_request();
+
 // Whether the client of a BudgetedServer's request accepts gzip.
 bool takes_gzip(const httplib::Request& request);
 
@@ -52,6 +57,11 @@ class BudgetedServer : public httplib::Server {
   BudgetedServer(ConnectionBudget budget, Clients clients, std::shared_ptr<const TlsContext> tls)
       : budget_(budget), clients_(clients), tls_(std::move(tls)) {}
 
+  // So many connections may wait to be taken, instead of httplib's five. @pre it is bound
+  void let_wait(int connections);
+  // Ends the connection whose client has been waited for longest. False: none waits for its client.
+  bool end_one() { return waiting_.end_one(); }
+
  private:
   bool process_and_close_socket(socket_t socket) override;
   bool serve(socket_t socket);
@@ -59,6 +69,7 @@ class BudgetedServer : public httplib::Server {
   const ConnectionBudget budget_;
   const Clients clients_;  // kOwnUser: and root
   const std::shared_ptr<const TlsContext> tls_;
+  WaitingClients waiting_;
 };
 
 // How many connections may be open at a time: not more than `wanted`, and so few that enough

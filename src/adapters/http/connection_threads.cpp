@@ -1,6 +1,7 @@
 #include "http/connection_threads.h"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -19,24 +20,33 @@ bool leaves_room_for_nodes() {
 
 }  // namespace
 
-ConnectionThreads::ConnectionThreads(std::size_t most, std::size_t ready) : most_(most) {
+ConnectionThreads::ConnectionThreads(std::size_t most, std::size_t ready, EndOne end_one)
+    : most_(most), end_one_(std::move(end_one)) {
   const MutexLock lock(mutex_);
   while (threads_.size() < std::min(most, ready) && add_thread()) continue;
 }
 
 void ConnectionThreads::enqueue(std::function<void()> connection) {
+  constexpr std::chrono::milliseconds kLooks{50};  // whether one waits for its client by now
   MutexLock lock(mutex_);
-  something_changed_.wait(lock, [&]() CULPRIT_REQUIRES(mutex_) {
-    return is_ending_ || waiting_.size() < idle_ || threads_.size() < most_;
-  });
-  if (waiting_.size() >= idle_ && threads_.size() < most_ && !is_ending_ &&
-      !(leaves_room_for_nodes() && add_thread())) {
-    lock.unlock();
-    const RefusesConnections refuses;
-    return connection();
+  const auto has_turn = [&]() CULPRIT_REQUIRES(mutex_) {
+    return is_ending_ || waiting_.size() < idle_;
+  };
+  while (!has_turn() && !grows()) {
+    if (!end_one_() && threads_.size() < most_) {  // the system gives no thread
+      lock.unlock();
+      const RefusesConnections refuses;
+      return connection();
+    }
+    something_changed_.wait_for(lock, kLooks, has_turn);
   }
   waiting_.push_back(std::move(connection));
   something_changed_.notify_all();
+}
+
+// Whether there is a thread more than before.
+bool ConnectionThreads::grows() {
+  return threads_.size() < most_ && leaves_room_for_nodes() && add_thread();
 }
 
 bool ConnectionThreads::add_thread() {

@@ -178,7 +178,8 @@ class HttpServer::Http {
         server_({.body_bytes = kMostBytes}, is_on_socket() ? Clients::kOwnUser : Clients::kAny,
                 options_.tls) {
     server_.new_task_queue = [this] {
-      return new ConnectionThreads(most_connections_, kReadyThreads);
+      return new ConnectionThreads(most_connections_, kReadyThreads,
+                                   [this] { return server_.end_one(); });
     };
     server_.set_socket_options(take_port_alone);
     server_.set_tcp_nodelay(!is_on_socket());
@@ -219,11 +220,10 @@ class HttpServer::Http {
   }
 
   bool bind() {
-    if (is_on_socket()) return bind_to_socket();
-    port_ = options_.port;
-    if (port_ != 0) return server_.bind_to_port(options_.address, port_);
-    port_ = server_.bind_to_any_port(options_.address);
-    return port_ > 0;
+    constexpr int kMostWaiting = 128;  // until one is taken
+    const bool is_bound = is_on_socket() ? bind_to_socket() : bind_to_port();
+    if (is_bound) server_.let_wait(kMostWaiting);
+    return is_bound;
   }
   void listen() {
     server_.listen_after_bind();
@@ -239,6 +239,13 @@ class HttpServer::Http {
   const Options& options() const { return options_; }
 
  private:
+  bool bind_to_port() {
+    port_ = options_.port;
+    if (port_ != 0) return server_.bind_to_port(options_.address, port_);
+    port_ = server_.bind_to_any_port(options_.address);
+    return port_ > 0;
+  }
+
   // An earlier process with the same PID may have left a socket file in the way.
   bool bind_to_socket() {
     unlink(options_.socket.c_str());
@@ -267,6 +274,7 @@ class HttpServer::Http {
     if (is_foreign || !options_.access.allows_origin(q.get_header_value("Origin"), host))
       return refuse(403, "pages of other sites may not ask this server");
     const auto role = options_.access.role_of(q.get_header_value("Authorization"));
+    if (role) spare_this_request();
     const Role needed = role_for(q);
     if (!is_within_limits(q, role && *role >= needed ? role : std::nullopt))
       return refuse(429, "too many requests; wait a second");

@@ -499,11 +499,13 @@ TEST(WebServerStart, LeavesDescriptorsToTheManager) {
     pause();
     _exit(0);
   }
-  // The flood is there when no other client is served any more.
-  httplib::Client impatient("127.0.0.1", server->port());
-  impatient.set_connection_timeout(std::chrono::milliseconds(200));
-  impatient.set_read_timeout(std::chrono::milliseconds(200));
-  for (int i = 0; i < 100 && impatient.Get("/api/echo"); ++i) usleep(20'000);
+  // Others are served while the flood comes.
+  int served = 0;
+  for (int i = 0; i < 20; ++i) {
+    served += httplib::Client("127.0.0.1", server->port()).Get("/api/echo") ? 1 : 0;
+    usleep(20'000);
+  }
+  EXPECT_GE(served, 15);
   std::vector<int> opened;
   for (int i = 0; i < 24; ++i) opened.push_back(dup(0));
   EXPECT_TRUE(std::none_of(opened.begin(), opened.end(), [](int each) { return each < 0; }));

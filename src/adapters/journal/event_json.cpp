@@ -137,6 +137,7 @@ class EventWriter {
   void operator()(const ActionHeldBack& e) const {
     about(e.strategy);
     json_.member("reason", e.reason);
+    if (!e.candidates.empty()) add_reasons(e.suspects, e.candidates);
   }
   void operator()(const ApprovalAsked& e) const {
     about(e.strategy);

@@ -70,6 +70,7 @@ std::vector<EventWhat> samples() {
           OrderAccepted{{1, "ada", "", Forget{r}}},
           OrderRefused{{1, "ada", "", Approve{StrategyId(9)}}, "it does not wait"},
           ActionHeldBack{s, Restraint::kStorm, "a storm", Time(9s)},
+          ActionHeldBack{s, Restraint::kPaused, "paused by a person", kNever, candidates, suspects},
           ApprovalAsked{s, candidates, suspects},
           ApprovalLapsed{s},
           StrategyAbandoned{s, "paused"},

@@ -27,7 +27,7 @@ constexpr std::size_t kMuch = 1 << 20;
 Inheritance of_a_day() {
   const RuleId r(0);
   return {
-      {{{"R", "s", {9, 2}, {5, 1}}}, {{"R", "R", {3, 1}}}, {{"R", 2, 0.1, 2.5}}},
+      {{{"R", "s", {9, 2}, {5, 1}}}, {{"R", "R", {3, 1, 2.5}}}, {{"R", 2, 0.1, 2.5}}},
       {then(10s, FailureDetected{r, {}, {}}),
        then(11s, StrategyChosen{StrategyId(0), {}, {}, false, {}, {}}),
        then(12s, StrategyFailed{StrategyId(0), "it did not help"}), then(13s, RuleExhausted{r})}};
@@ -153,13 +153,13 @@ TEST(Inheritance, WhatTheyLearnedReplacesOursAndTheRestStays) {
                {{"R", "Q", {1, 0}}},
                {{"P", 1, 3, 3}, {"R", 1, 2, 2}}};
   inherit(ours, {{{"R", "s", {9, 2}, {5, 1}}, {"Q", "u", {1, 1}, {1, 1}}},
-                 {{"R", "Q", {5, 1}}},
+                 {{"R", "Q", {5, 1, 1.5}}},
                  {{"R", 4, 1, 2}}});
   ASSERT_EQ(ours.beliefs.size(), 3u);
   EXPECT_EQ(ours.beliefs[0].belief.alpha, 9);
   EXPECT_EQ(ours.beliefs[1].belief.alpha, 4);
   ASSERT_EQ(ours.couplings.size(), 1u);
-  EXPECT_EQ(ours.couplings[0].coupling.cleared, 5);
+  EXPECT_EQ(ours.couplings[0].coupling, (Coupling{5, 1, 1.5}));
   EXPECT_EQ(ours.latencies, (std::vector<LearnedLatency>{{"P", 1, 3, 3}, {"R", 4, 1, 2}}));
 }
 

@@ -63,6 +63,7 @@ void merge(Learned& learned, const Learned& other) {
     } else {
       ours->coupling.cleared += theirs.coupling.cleared;
       ours->coupling.stayed += theirs.coupling.stayed;
+      ours->coupling.spared += theirs.coupling.spared;
     }
   }
   for (const LearnedLatency& theirs : other.latencies) {

@@ -57,10 +57,10 @@ void follow(Learned& learned, std::string_view kind, const Json& body) {
   if (!body.is_object()) return;
   if (body.contains("forgotten")) return forget(learned, text_of(body, "forgotten"));
   if (kind == kind::kCoupling)
-    return replace(learned,
-                   LearnedCoupling{text_of(body, "cause"),
-                                   text_of(body, "effect"),
-                                   {number_of(body, "cleared"), number_of(body, "stayed")}});
+    return replace(learned, LearnedCoupling{text_of(body, "cause"),
+                                            text_of(body, "effect"),
+                                            {number_of(body, "cleared"), number_of(body, "stayed"),
+                                             number_of(body, "spared")}});
   if (kind == kind::kLatency)
     return replace(
         learned, LearnedLatency{text_of(body, "rule"), static_cast<int>(integer_of(body, "count")),
@@ -111,7 +111,8 @@ Json body_of(const LearnedCoupling& learned) {
   return {{"cause", learned.cause},
           {"effect", learned.effect},
           {"cleared", learned.coupling.cleared},
-          {"stayed", learned.coupling.stayed}};
+          {"stayed", learned.coupling.stayed},
+          {"spared", learned.coupling.spared}};
 }
 
 Json body_of(const LearnedLatency& learned) {

@@ -1,6 +1,9 @@
 #include "journal/recorder.h"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
+#include <utility>
 
 #include "journal/event_json.h"
 #include "journal/recovery.h"
@@ -21,12 +24,13 @@ void replace(Learned& learned, const Learned& news) {
     });
     learned.beliefs.push_back(each);
   }
-  for (const LearnedCoupling& each : news.couplings) {
-    std::erase_if(learned.couplings, [&](const LearnedCoupling& old) {
-      return old.cause == each.cause && old.effect == each.effect;
-    });
-    learned.couplings.push_back(each);
-  }
+  // One failure that clears may change a thousand of them: its exposure.
+  std::set<std::pair<std::string_view, std::string_view>> pairs;
+  for (const LearnedCoupling& each : news.couplings) pairs.emplace(each.cause, each.effect);
+  std::erase_if(learned.couplings, [&](const LearnedCoupling& old) {
+    return pairs.contains({old.cause, old.effect});
+  });
+  learned.couplings.insert(learned.couplings.end(), news.couplings.begin(), news.couplings.end());
   for (const LearnedLatency& each : news.latencies) {
     std::erase_if(learned.latencies,
                   [&](const LearnedLatency& old) { return old.rule == each.rule; });

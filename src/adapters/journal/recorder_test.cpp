@@ -212,6 +212,21 @@ TEST_F(Recording, HowLateARuleIsIsOnRecordWhenItChanges) {
   EXPECT_EQ(learned(), (std::vector<LearnedLatency>{{"Blurred", 0, 0, 0}}));
 }
 
+TEST_F(Recording, ExposureIsOnRecordOnceWhenItChanges) {
+  const auto recorder = begin();
+  knowledge.couplings.stayed_away(RuleId(0), RuleId(1), 1.3);
+  for (int i = 0; i < 3; ++i) sees_a_failure(*recorder);
+  EXPECT_TRUE(recorder->end());
+  const Reader reader = value_of(Reader::open(path));
+  EXPECT_EQ(value_of(reader.learned()).couplings,
+            (std::vector<LearnedCoupling>{{"Silent", "Blurred", {0, 0, 1.3}}}));
+  int written = 0;
+  auto rows = value_of(reader.entries(Which::kReadable));
+  Entry entry;
+  while (value_of(rows.next(entry))) written += entry.kind == kind::kCoupling ? 1 : 0;
+  EXPECT_EQ(written, 1);
+}
+
 TEST_F(Recording, FailuresThatClearByThemselvesAreOnRecord) {
   constexpr RuleId kBlurred{std::size_t{1}};
   const auto recorder = begin();

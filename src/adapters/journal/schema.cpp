@@ -37,6 +37,17 @@ CREATE TABLE IF NOT EXISTS latency(
   rule TEXT PRIMARY KEY, count INTEGER NOT NULL,
   least REAL NOT NULL, most REAL NOT NULL  -- seconds
 ) WITHOUT ROWID;
+)sql",
+    // Made anew, which also works if the exposure is there and only the version is damaged.
+    R"sql(
+ALTER TABLE coupling RENAME TO coupling_before;
+CREATE TABLE coupling(
+  cause TEXT NOT NULL, effect TEXT NOT NULL, cleared REAL NOT NULL, stayed REAL NOT NULL,
+  spared REAL NOT NULL,  -- exposure
+  PRIMARY KEY(cause, effect)
+) WITHOUT ROWID;
+INSERT INTO coupling SELECT cause, effect, cleared, stayed, 0 FROM coupling_before;
+DROP TABLE coupling_before;
 )sql"};
 
 // A reader takes what later versions added for empty.
@@ -60,6 +71,11 @@ Expected<Found> look(const Database& database) {
     return Error{"it was written by a newer culprit (version " + std::to_string(*version) +
                  " of the file, this one knows " + std::to_string(schema_version()) + ")"};
   return Found{*version, false};
+}
+
+bool is_of_version(const Database& database, int least) {
+  const auto version = database.number("PRAGMA user_version");
+  return version && *version >= least;
 }
 
 }  // namespace
@@ -90,11 +106,8 @@ Expected<void> check_schema(const Database& database) {
   return {};
 }
 
-bool has_latencies(const Database& database) {
-  constexpr int kSince = 2;
-  const auto version = database.number("PRAGMA user_version");
-  return version && *version >= kSince;
-}
+bool has_latencies(const Database& database) { return is_of_version(database, 2); }
+bool has_exposure(const Database& database) { return is_of_version(database, 3); }
 
 bool has_damaged_head(const Database& database) {
   constexpr int kNoCulpritYet = 1000;

@@ -14,8 +14,9 @@ Expected<void> prepare_schema(Database& database);
 
 // Whether this is a journal that this culprit can read, of its own version or of an older one.
 Expected<void> check_schema(const Database& database);
-// False for a journal of an older culprit, which has no such table.
+// False for a journal of an older culprit, which has no such table or column.
 bool has_latencies(const Database& database);
+bool has_exposure(const Database& database);
 
 // Whether it has the tables of a journal, but lacks the numbers in its head that mark it as one:
 // not those of any culprit that there may be.

@@ -41,7 +41,8 @@ Json to_json(const Learned& learned) {
     json["couplings"].push_back({{"cause", each.cause},
                                  {"effect", each.effect},
                                  {"cleared", each.coupling.cleared},
-                                 {"stayed", each.coupling.stayed}});
+                                 {"stayed", each.coupling.stayed},
+                                 {"spared", each.coupling.spared}});
   for (const LearnedLatency& each : learned.latencies)
     json["latencies"].push_back({{"rule", each.rule},
                                  {"count", each.count},
@@ -70,8 +71,10 @@ Expected<Learned> learned_from_json(const Json& json) {
       return damaged;
   }
   for (const Json& each : couplings) {
-    const Coupling coupling{number_of(each, "cleared", -1), number_of(each, "stayed", -1)};
-    if (!is_count(coupling.cleared) || !is_count(coupling.stayed)) return damaged;
+    const Coupling coupling{number_of(each, "cleared", -1), number_of(each, "stayed", -1),
+                            number_of(each, "spared", 0)};  // older culprits have none
+    if (!is_count(coupling.cleared) || !is_count(coupling.stayed) || !is_count(coupling.spared))
+      return damaged;
     learned.couplings.push_back({text_of(each, "cause"), text_of(each, "effect"), coupling});
   }
   for (const Json& each : latencies) {

@@ -37,17 +37,20 @@ struct Kinds {
 
 // Files hold these numbers: they must not change.
 constexpr std::uint8_t kProcessSeenWithCause = 24;
-using ObservationKinds = Kinds<
-    Kind<1, NodeAppeared>, Kind<2, NodeVanished>, Kind<3, EndpointAppeared>,
-    Kind<4, EndpointVanished>, Kind<5, SampleArrived>, Kind<6, SignalRead>, Kind<7, DiagnosticRead>,
-    Kind<8, ParameterRead>, Kind<9, LifecycleRead>, Kind<10, ProcessSeen>, Kind<11, Probed>,
-    Kind<12, Reply>, Kind<13, LinkTrouble>, Kind<14, Order>, Kind<15, NamesakesSeen>,
-    Kind<16, HearingLost>, Kind<17, HearingRegained>, Kind<18, Overslept>, Kind<19, StatusHeard>,
-    Kind<20, ParametersListed>, Kind<21, ProcessWorked>, Kind<22, HostReached>, Kind<23, EndsWith>,
-    Kind<kProcessSeenWithCause, ProcessSeen>, Kind<25, LauncherSeen>, Kind<26, PriorsTold>,
-    Kind<27, LivesOn>, Kind<28, HostHeard>, Kind<29, ListenerKnown>, Kind<30, StartedHere>,
-    Kind<31, UsageSeen>, Kind<32, StartBarred>, Kind<33, PublisherKnown>, Kind<34, GoalsSeen>,
-    Kind<35, LogSeen>, Kind<36, TimeHeld>, Kind<37, ClockStepped>>;
+constexpr std::uint8_t kSampleArrivedLostHere = 38;
+using ObservationKinds =
+    Kinds<Kind<1, NodeAppeared>, Kind<2, NodeVanished>, Kind<3, EndpointAppeared>,
+          Kind<4, EndpointVanished>, Kind<5, SampleArrived>, Kind<6, SignalRead>,
+          Kind<7, DiagnosticRead>, Kind<8, ParameterRead>, Kind<9, LifecycleRead>,
+          Kind<10, ProcessSeen>, Kind<11, Probed>, Kind<12, Reply>, Kind<13, LinkTrouble>,
+          Kind<14, Order>, Kind<15, NamesakesSeen>, Kind<16, HearingLost>,
+          Kind<17, HearingRegained>, Kind<18, Overslept>, Kind<19, StatusHeard>,
+          Kind<20, ParametersListed>, Kind<21, ProcessWorked>, Kind<22, HostReached>,
+          Kind<23, EndsWith>, Kind<kProcessSeenWithCause, ProcessSeen>, Kind<25, LauncherSeen>,
+          Kind<26, PriorsTold>, Kind<27, LivesOn>, Kind<28, HostHeard>, Kind<29, ListenerKnown>,
+          Kind<30, StartedHere>, Kind<31, UsageSeen>, Kind<32, StartBarred>,
+          Kind<33, PublisherKnown>, Kind<34, GoalsSeen>, Kind<35, LogSeen>, Kind<36, TimeHeld>,
+          Kind<37, ClockStepped>, Kind<kSampleArrivedLostHere, SampleArrived>>;
 using OrderKinds =
     Kinds<Kind<1, Pause>, Kind<2, Resume>, Kind<3, SetDryRun>, Kind<4, Approve>, Kind<5, Refuse>,
           Kind<6, Silence>, Kind<7, LiftSilence>, Kind<8, RunStrategy>, Kind<9, Forget>,
@@ -75,6 +78,7 @@ class Fields {
     if constexpr (std::is_same_v<std::remove_const_t<T>, ProcessSeen>) {
       if (number == kProcessSeenWithCause) codec_.word(o.cause, Cause::kOrder);
     }
+    if constexpr (std::is_same_v<T, SampleArrived>) o.lost_here = number == kSampleArrivedLostHere;
   }
 
  private:
@@ -234,6 +238,9 @@ void write_observation(const Observation& observation, Time now, ByteWriter& out
         std::uint8_t number = ObservationKinds::number_of<What>();
         if constexpr (std::is_same_v<What, ProcessSeen>) {
           if (what.cause != Cause::kUnknown) number = kProcessSeenWithCause;
+        }
+        if constexpr (std::is_same_v<What, SampleArrived>) {
+          if (what.lost_here) number = kSampleArrivedLostHere;
         }
         out.byte(number);
         out.integer((now - observation.at).count());

@@ -82,7 +82,8 @@ ObservationWhat anything() {
     case 3:
       return EndpointVanished{text, EndpointKind::kClient, "/x"};
     case 4:
-      return SampleArrived{TopicId(0), *rc::gen::arbitrary<std::uint32_t>()};
+      return SampleArrived{TopicId(0), *rc::gen::arbitrary<std::uint32_t>(),
+                           *rc::gen::arbitrary<bool>()};
     case 5:
       return SignalRead{SignalId(0), any_value()};
     case 6:

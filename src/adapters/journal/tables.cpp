@@ -1,6 +1,7 @@
 #include "journal/tables.h"
 
 #include <algorithm>
+#include <string>
 
 #include "journal/schema.h"
 
@@ -40,14 +41,15 @@ Expected<Learned> read_learned(const Database& database) {
                                {beliefs->real(2), beliefs->real(3)},
                                {beliefs->real(4), beliefs->real(5)}});
   if (!row) return Error{row.error()};
-  auto couplings = database.prepare(
-      "SELECT cause, effect, cleared, stayed FROM coupling ORDER BY cause, effect");
+  const std::string spared = has_exposure(database) ? "spared" : "0";
+  auto couplings = database.prepare("SELECT cause, effect, cleared, stayed, " + spared +
+                                    " FROM coupling ORDER BY cause, effect");
   if (!couplings) return Error{couplings.error()};
   row = couplings->step();
   for (; row && *row; row = couplings->step())
     learned.couplings.push_back({std::string(couplings->bytes(0)),
                                  std::string(couplings->bytes(1)),
-                                 {couplings->real(2), couplings->real(3)}});
+                                 {couplings->real(2), couplings->real(3), couplings->real(4)}});
   if (!row) return Error{row.error()};
   if (!has_latencies(database)) return learned;
   auto latencies = database.prepare("SELECT rule, count, least, most FROM latency ORDER BY rule");

@@ -270,7 +270,7 @@ Expected<void> Writer::insert(Entry entry) {
 
 Expected<void> Writer::keep(const Learned& learned, std::int64_t now) {
   auto belief = database_.prepare("INSERT OR REPLACE INTO belief VALUES(?, ?, ?, ?, ?, ?)");
-  auto coupling = database_.prepare("INSERT OR REPLACE INTO coupling VALUES(?, ?, ?, ?)");
+  auto coupling = database_.prepare("INSERT OR REPLACE INTO coupling VALUES(?, ?, ?, ?, ?)");
   if (!belief) return Error{belief.error()};
   auto latency = database_.prepare("INSERT OR REPLACE INTO latency VALUES(?, ?, ?, ?)");
   if (!coupling) return Error{coupling.error()};
@@ -286,6 +286,7 @@ Expected<void> Writer::keep(const Learned& learned, std::int64_t now) {
   for (const LearnedCoupling& each : learned.couplings) {
     coupling->bind(1, std::string_view(each.cause)).bind(2, std::string_view(each.effect));
     coupling->bind(3, each.coupling.cleared).bind(4, each.coupling.stayed);
+    coupling->bind(5, each.coupling.spared);
     if (const auto done = coupling->step(); !done) return Error{done.error()};
     const Entry entry{0, now, std::string(kind::kCoupling), to_line(body_of(each))};
     if (const auto inserted = insert(entry); !inserted) return inserted;

@@ -257,9 +257,20 @@ TEST(Faults, AJournalOfANewerCulpritIsLeftAlone) {
   EXPECT_THAT(unread.error(), HasSubstr("newer culprit"));
 }
 
-// As version 1 left it: without the table of latencies.
+// As version 1 left it: without the table of latencies, and couplings without exposure.
 void make_old(const std::filesystem::path& path) {
-  run_sql(path, "DROP TABLE latency; PRAGMA user_version = 1");
+  run_sql(path,
+          "DROP TABLE latency; ALTER TABLE coupling DROP COLUMN spared; "
+          "PRAGMA user_version = 1");
+}
+
+Writer open_with_couplings(const std::filesystem::path& path,
+                           const std::vector<LearnedCoupling>& couplings) {
+  Writer writer = open(path);
+  Batch all;
+  all.learned.couplings = couplings;
+  EXPECT_TRUE(append(writer, all));
+  return writer;
 }
 
 TEST(OlderFile, IsReadAsItIs) {
@@ -312,6 +323,63 @@ TEST(OlderFile, OnlyByItsVersionKeepsItsLatencies) {
   }
   run_sql(folder / "a.journal", "PRAGMA user_version = 1");
   EXPECT_EQ(value_of(open(folder / "a.journal").learned()).latencies, latencies);
+}
+
+TEST(Writer, KeepsTheExposureOfCouplings) {
+  const TestFolder folder;
+  const std::vector<LearnedCoupling> couplings = {{"Rule", "Other", {2, 1, 5.1}},
+                                                  {"Rule", "Third", {0, 0, 0.7}}};
+  { const Writer first = open_with_couplings(folder / "a.journal", couplings); }
+  const Writer writer = open(folder / "a.journal");
+  EXPECT_EQ(writer.remark(), "");
+  EXPECT_EQ(value_of(writer.learned()).couplings, couplings);
+  EXPECT_EQ(value_of(value_of(Reader::open(folder / "a.journal")).learned()).couplings, couplings);
+}
+
+TEST(OlderFile, HasCouplingsWithoutExposure) {
+  const TestFolder folder;
+  const std::vector<LearnedCoupling> couplings = {{"Rule", "Other", {2, 1, 0}}};
+  { const Writer first = open_with_couplings(folder / "a.journal", couplings); }
+  make_old(folder / "a.journal");
+  EXPECT_EQ(value_of(value_of(Reader::open(folder / "a.journal")).learned()).couplings, couplings);
+  const std::vector<LearnedCoupling> later = {{"Rule", "Other", {2, 1, 3.5}}};
+  {
+    const Writer writer = open_with_couplings(folder / "a.journal", later);
+    EXPECT_EQ(writer.remark(), "");
+  }
+  EXPECT_EQ(value_of(open(folder / "a.journal").learned()).couplings, later);
+}
+
+TEST(OlderFile, OnlyByItsVersionHasTheExposureOfTheSecondCopy) {
+  const TestFolder folder;
+  const std::vector<LearnedCoupling> couplings = {{"Rule", "Other", {2, 1, 3.5}}};
+  { const Writer first = open_with_couplings(folder / "a.journal", couplings); }
+  run_sql(folder / "a.journal", "PRAGMA user_version = 2");
+  EXPECT_EQ(value_of(open(folder / "a.journal").learned()).couplings, couplings);
+}
+
+TEST(Faults, AnExposureThatWasChangedBehindItsBackIsKnownFromTheSecondCopy) {
+  const TestFolder folder;
+  const std::vector<LearnedCoupling> couplings = {{"Rule", "Other", {2, 1, 3.5}}};
+  { const Writer first = open_with_couplings(folder / "a.journal", couplings); }
+  run_sql(folder / "a.journal", "UPDATE coupling SET spared = 1000");
+  const Writer writer = open(folder / "a.journal");
+  EXPECT_THAT(writer.remark(), HasSubstr("second copy"));
+  EXPECT_EQ(value_of(writer.learned()).couplings, couplings);
+}
+
+TEST(OlderFile, HasRowsOfCouplingsWithoutExposure) {
+  const TestFolder folder;
+  {
+    Writer writer = open_with_couplings(folder / "a.journal", {{"Rule", "Other", {2, 1, 3.5}}});
+    Batch older;
+    older.entries = {{0, kWrittenAt, std::string(kind::kCoupling),
+                      R"({"cause":"Rule","effect":"Third","cleared":1,"stayed":4})"}};
+    ASSERT_TRUE(append(writer, older));
+  }
+  EXPECT_THAT(value_of(open(folder / "a.journal").learned()).couplings,
+              testing::ElementsAre(LearnedCoupling{"Rule", "Other", {2, 1, 3.5}},
+                                   LearnedCoupling{"Rule", "Third", {1, 4, 0}}));
 }
 
 TEST(Faults, ALatencyThatWasChangedBehindItsBackIsKnownFromTheSecondCopy) {
@@ -398,12 +466,12 @@ TEST(Learned, OfAFleetIsAddedUp) {
   ours.beliefs = {{"R", "s", {6, 5}, {5, 5}}};  // helped once
   Learned theirs;
   theirs.beliefs = {{"R", "s", {10, 7}, {8, 4}}, {"R", "t", {3, 2}, {2, 2}}};  // other priors
-  theirs.couplings = {{"R", "S", {2, 1}}};
+  theirs.couplings = {{"R", "S", {2, 1, 0.5}}};
   merge(ours, theirs);
   merge(ours, theirs);
   EXPECT_EQ(ours.beliefs[0].belief, (Belief{10, 11})) << "twice two successes, three failures";
   EXPECT_EQ(ours.beliefs[1].belief, (Belief{4, 2}));
-  EXPECT_EQ(ours.couplings[0].coupling, (Coupling{4, 2}));
+  EXPECT_EQ(ours.couplings[0].coupling, (Coupling{4, 2, 1}));
 }
 
 TEST(Learned, LatenciesOfAFleetAreTheShortestAndTheLongest) {
@@ -443,6 +511,20 @@ TEST(Learned, LatenciesAreKeptToTheNanosecond) {
   all.latencies = {named("R", learned)};
   const Learned read = value_of(learned_from_json(parse_json(to_line(to_json(all)))));
   EXPECT_EQ(latency_from(read.latencies.at(0)), learned);
+}
+
+TEST(Learned, ExposureIsKeptToTheLastBitAndOlderCouplingsHaveNone) {
+  Learned all;
+  all.couplings = {{"R", "S", {2, 1, 31.0 / 7}}};
+  const auto read = [](const std::string& text) {
+    return value_of(learned_from_json(parse_json(text))).couplings;
+  };
+  EXPECT_EQ(read(to_line(to_json(all))), all.couplings);
+  EXPECT_EQ(read(R"({"beliefs":[],"couplings":[
+                     {"cause":"R","effect":"S","cleared":2,"stayed":1}]})"),
+            (std::vector<LearnedCoupling>{{"R", "S", {2, 1, 0}}}));
+  EXPECT_FALSE(learned_from_json(parse_json(R"({"beliefs":[],"couplings":[
+      {"cause":"R","effect":"S","cleared":2,"stayed":1,"spared":-1}]})")));
 }
 
 TEST(Learned, LatenciesThatCannotBeAreRefused) {

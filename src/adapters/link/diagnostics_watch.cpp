@@ -76,25 +76,28 @@ void DiagnosticsWatch::on_sample(const Sample& sample) {
   if (writer.prefix() == self_.context().participant().guid().prefix()) return;
   const std::size_t size = sample.payload.size();
   if (size > msg::DiagnosticArray::kLargest) return;
-  const auto message = decode<msg::DiagnosticArray>(sample.payload);
+  auto message = decode<msg::DiagnosticArray>(sample.payload);
   if (!message) return;
   const MutexLock lock(mutex_);
   const auto known = writers_.find(writer);
   if (known != writers_.end()) return read(*message, known->second);
-  if (waiting_ + size > kMostWaiting) return;
-  waiting_ += size;
-  tasks_.post([this, writer, size, message = *message] { look_up(writer, size, message); });
+  const auto room = waiting_.admit(writer, size);
+  if (room == WaitingLookups::Room::kNone) return;
+  if (room == WaitingLookups::Room::kWriterOnly) message->status.clear();
+  tasks_.post([this, writer, size, room, message = std::move(*message)] {
+    look_up(writer, size, room, message);
+  });
 }
 
 // A writer that no node claims yet is looked up again with its next message.
-void DiagnosticsWatch::look_up(const Guid& writer, std::size_t size,
+void DiagnosticsWatch::look_up(const Guid& writer, std::size_t size, WaitingLookups::Room room,
                                const msg::DiagnosticArray& message) {
   constexpr std::size_t kMostWriters = 10'000;  // the network decides how many there are
   const Graph::Owner owner = self_.context().graph().owner_of(writer);
   SignalPublishers::Publisher by{owner.node, owner.pid != 0, owner.node.empty() || owner.counts,
                                  component_of_(owner.node)};
   const MutexLock lock(mutex_);
-  waiting_ -= size;
+  waiting_.done(writer, size, room);
   if (by.node.empty()) {
     if (unclaimed_.size() >= kMostWriters) unclaimed_.clear();
     const Time now = live_now();

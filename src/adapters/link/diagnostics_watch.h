@@ -17,6 +17,7 @@
 #include "base/mutex.h"
 #include "link/diagnostics_reading.h"
 #include "link/signal_publishers.h"
+#include "link/waiting_lookups.h"
 #include "robot/inbox.h"
 #include "ros2/subscription.h"
 
@@ -46,7 +47,8 @@ class DiagnosticsWatch {
   DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of);
   bool is_wanted() const;
   void on_sample(const Sample& sample);
-  void look_up(const Guid& writer, std::size_t size, const msg::DiagnosticArray& message);
+  void look_up(const Guid& writer, std::size_t size, WaitingLookups::Room room,
+               const msg::DiagnosticArray& message);
   void read(const msg::DiagnosticArray& message, const SignalPublishers::Publisher& by)
       CULPRIT_REQUIRES(mutex_);
   bool may_say(const std::string& status, std::optional<ComponentId> publisher,
@@ -65,7 +67,7 @@ class DiagnosticsWatch {
       CULPRIT_GUARDED_BY(mutex_);  // that were looked up
   // Those that no node claims: when each was looked up first.
   std::unordered_map<Guid, Time> unclaimed_ CULPRIT_GUARDED_BY(mutex_);
-  std::size_t waiting_ CULPRIT_GUARDED_BY(mutex_) = 0;  // bytes
+  WaitingLookups waiting_ CULPRIT_GUARDED_BY(mutex_){kMostWaiting};
   // The newest values, by signal and by diagnostic.
   std::unordered_map<std::uint32_t, std::string> last_ CULPRIT_GUARDED_BY(mutex_);
   std::unordered_map<std::uint32_t, std::uint8_t> last_level_ CULPRIT_GUARDED_BY(mutex_);

@@ -99,6 +99,7 @@ Expected<void> Link::start() {
     publish_again();
     tell_of_refused();
     tell_of_foreign_sources();
+    tell_of_dropped();
     remind();
     listen_to_hosts();
     look_at_hosts();
@@ -551,6 +552,17 @@ void Link::tell_of_refused() {
   refused_ = refused.count;
   inbox_.put(LinkTrouble{std::to_string(refused.count) + " datagrams were kept out so far: " +
                          refused.why + "; which program on this network sends them?"});
+}
+
+// Likewise.
+void Link::tell_of_dropped() {
+  const std::uint64_t dropped = context_->participant().dropped_here();
+  if (dropped == 0 || dropped < 10 * dropped_) return;
+  dropped_ = dropped;
+  inbox_.put(
+      LinkTrouble{"culprit's own sockets were full and dropped " + std::to_string(dropped) +
+                  " datagrams so far; loss() is unknown while they may be what is missing. Raise "
+                  "net.core.rmem_max, or find the program that floods the network"});
 }
 
 void Link::tell_of_foreign_sources() {

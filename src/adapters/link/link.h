@@ -162,6 +162,7 @@ class Link {
   void tell_usage();
   void tell_of_refused();
   void tell_of_foreign_sources();
+  void tell_of_dropped();
   void remind();
 
   ComponentLink* link_of(ComponentId component);
@@ -206,6 +207,7 @@ class Link {
   std::unique_ptr<Timer> publishing_;
   std::unique_ptr<Hearing> hearing_;
   std::uint64_t refused_ = 0;  // datagrams that were reported
+  std::uint64_t dropped_ = 0;  // likewise, by our own full sockets
   std::unique_ptr<LeaseLink> lease_;
   std::unique_ptr<ComponentHosts> hosts_;
   Time looked_at_hosts_ = kLongAgo;  // on the executor's thread

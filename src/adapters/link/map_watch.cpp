@@ -85,7 +85,8 @@ void MapWatch::stop() {
 void MapWatch::on_sample(Part part, const std::string& topic, const Sample& sample) {
   if (part <= kScan) {
     const MutexLock lock(mutex_);
-    return keep(part, topic, sample);
+    const std::size_t most = part == kGrid ? kMostBytes : kMostBytesOfOthers;
+    return newest_[part].keep(topic, sample.payload, most, live_now(), messages_);
   }
   if (sample.payload.size() > kMostBytesOfOthers) return;
   const auto message = decode<msg::TFMessage>(sample.payload);
@@ -95,24 +96,13 @@ void MapWatch::on_sample(Part part, const std::string& topic, const Sample& samp
               live_now());
 }
 
-void MapWatch::keep(Part part, const std::string& topic, const Sample& sample) {
-  Newest& newest = newest_[part];
-  const bool fits = sample.payload.size() <= (part == kGrid ? kMostBytes : kMostBytesOfOthers);
-  newest.refused = fits ? 0 : sample.payload.size();
-  if (!fits) return;
-  newest.topic = topic;
-  newest.payload.assign(sample.payload.begin(), sample.payload.end());
-  newest.at = live_now();
-  newest.number = ++messages_;
-}
-
 // Without the lock: a large map takes a moment, and messages come meanwhile.
 void MapWatch::decode_grid(Time now) {
   Bytes payload;
   std::uint64_t number = 0;
   {
     const MutexLock lock(mutex_);
-    const Newest& newest = newest_[kGrid];
+    const NewestMessage& newest = newest_[kGrid];
     if (newest.number == decoded_ || now < later(decoded_at_, kGridPeriod)) return;
     payload = newest.payload;
     number = decoded_ = newest.number;
@@ -130,7 +120,7 @@ MapPicture MapWatch::picture(std::uint64_t known, Time now) {
   decode_grid(now);
   MapPicture picture;
   const MutexLock lock(mutex_);
-  const Newest& newest = newest_[kGrid];
+  const NewestMessage& newest = newest_[kGrid];
   picture.topics = topics_;
   picture.topic = newest.topic;
   if (newest.refused > 0)
@@ -166,7 +156,7 @@ void MapWatch::add_robots(MapPicture& picture, Time now) const {
 
 template <class Message>
 void MapWatch::add_line(MapPicture& picture, std::optional<MapPicture::Line>& line,
-                        const Newest& newest, Time now) const {
+                        const NewestMessage& newest, Time now) const {
   if (newest.refused > 0)
     picture.troubles.push_back("A path or scan of " + std::to_string(newest.refused >> 20) +
                                " MB is not drawn; the limit is 4 MB");

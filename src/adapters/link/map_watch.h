@@ -9,6 +9,7 @@
 
 #include "base/mutex.h"
 #include "link/map_picture.h"
+#include "link/newest_message.h"
 #include "ros2/subscription.h"
 
 namespace culprit::ros2 {
@@ -45,27 +46,19 @@ class MapWatch {
     bool latches = false;
     std::unique_ptr<RawSubscription> subscription;
   };
-  struct Newest {
-    std::string topic;
-    Bytes payload;
-    Time at{};
-    std::uint64_t number = 0;
-    std::size_t refused = 0;  // bytes of a message that was too large
-  };
 
   void listen(Part part, const Topic& topic);
   void on_sample(Part part, const std::string& topic, const Sample& sample);
-  void keep(Part part, const std::string& topic, const Sample& sample) CULPRIT_REQUIRES(mutex_);
   void decode_grid(Time now);
   void add_robots(MapPicture& picture, Time now) const CULPRIT_REQUIRES(mutex_);
   template <class Message>
-  void add_line(MapPicture& picture, std::optional<MapPicture::Line>& line, const Newest& newest,
-                Time now) const CULPRIT_REQUIRES(mutex_);
+  void add_line(MapPicture& picture, std::optional<MapPicture::Line>& line,
+                const NewestMessage& newest, Time now) const CULPRIT_REQUIRES(mutex_);
 
   NodeEntry& self_;
   mutable Mutex mutex_;
   std::vector<std::string> topics_ CULPRIT_GUARDED_BY(mutex_);
-  std::array<Newest, kScan + 1> newest_ CULPRIT_GUARDED_BY(mutex_);
+  std::array<NewestMessage, kScan + 1> newest_ CULPRIT_GUARDED_BY(mutex_);
   FrameTree frames_ CULPRIT_GUARDED_BY(mutex_);
   std::uint64_t messages_ CULPRIT_GUARDED_BY(mutex_) = 0;
   // The map that was decoded last.

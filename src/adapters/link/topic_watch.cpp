@@ -94,12 +94,16 @@ void TopicWatch::on_arrival(const Sample& sample) {
   has_heard_ = true;
   if (!counts_) return;
   const Time at = arrival_of(sample);
-  const std::uint32_t published = published_since(sample.identity);
-  if (whole_) inbox_.put({at, SampleArrived{*whole_, published}}, Urgency::kSoon);
+  const SampleGaps::Step step = gaps_.next(sample.identity.writer, sample.identity.sequence,
+                                           self_.context().participant().dropped_here());
+  const auto put = [&](TopicId topic) {
+    inbox_.put({at, SampleArrived{topic, step.published, step.lost_here}}, Urgency::kSoon);
+  };
+  if (whole_) put(*whole_);
   if (of_publishers_.empty()) return;
   const auto publisher = publisher_of(sample.identity.writer);
   for (const auto& [topic, wanted] : of_publishers_) {
-    if (wanted == publisher) inbox_.put({at, SampleArrived{topic, published}}, Urgency::kSoon);
+    if (wanted == publisher) put(topic);
   }
 }
 
@@ -223,17 +227,6 @@ void TopicWatch::on_unheard() {
                            "culprit knows only that they come"});
   }
   if (whole_) inbox_.put(SampleArrived{*whole_, 1}, Urgency::kSoon);
-}
-
-// How many samples the writer wrote since the last one that came here, this one included.
-std::uint32_t TopicWatch::published_since(const SampleIdentity& identity) {
-  constexpr std::size_t kMaxWriters = 1000;  // the network decides how many there are
-  constexpr std::int64_t kMaxGap = 1000;     // a larger one is a restart or a lie
-  if (last_sequence_.size() >= kMaxWriters) last_sequence_.clear();
-  const auto [last, is_new] = last_sequence_.try_emplace(identity.writer, identity.sequence);
-  const std::int64_t gap = is_new ? 1 : identity.sequence - last->second;
-  last->second = identity.sequence;
-  return gap < 1 || gap > kMaxGap ? 1 : static_cast<std::uint32_t>(gap);
 }
 
 }  // namespace culprit::ros2

@@ -20,6 +20,7 @@
 #include "link/topic_listener.h"
 #include "robot/inbox.h"
 #include "ros2/field_reader.h"
+#include "ros2/sample_gaps.h"
 
 namespace culprit::ros2 {
 
@@ -71,7 +72,6 @@ class TopicWatch {
   std::optional<ComponentId> publisher_of(const Guid& writer);
   void ask();
   void on_unheard();
-  std::uint32_t published_since(const SampleIdentity& identity);
 
   NodeEntry& self_;
   const TopicId topic_;
@@ -90,7 +90,7 @@ class TopicWatch {
   std::set<std::string> told_;  // troubles: each publisher has the same ones
 
   // Used by the receive thread only, once the listener exists.
-  std::unordered_map<Guid, std::int64_t> last_sequence_;  // by writer
+  SampleGaps gaps_;
 
   mutable Mutex mutex_;
   Time asked_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;  // for writers

@@ -38,6 +38,16 @@ TEST_F(Remote, SshIsToldToAskNobody) {
                                 HasSubstr("-- robot@rover2 true"))));
 }
 
+// The other computer gets no terminal, agent or port of ours, and no name is an option.
+TEST_F(Remote, SshGivesTheOtherComputerNothing) {
+  EXPECT_TRUE(could_reach(kHost));
+  EXPECT_TRUE(could_reach("-oProxyCommand=touch")) << "the stand-in goes on behind --";
+  EXPECT_THAT(ssh.asked(), Each(AllOf(HasSubstr("-axT "), HasSubstr("-oClearAllForwardings=yes"),
+                                      HasSubstr("-oPermitLocalCommand=no"),
+                                      HasSubstr("-oServerAliveInterval="))));
+  EXPECT_THAT(ssh.asked().back(), HasSubstr("-- -oProxyCommand=touch true"));
+}
+
 TEST_F(Remote, ThatRefusesUsIsToldWithWhatToDo) {
   ssh.refuse("robot@rover2: Permission denied (publickey,password).");
   EXPECT_THAT(could_reach(kHost).error(),

@@ -5,6 +5,7 @@
 
 #include "base/invariant.h"
 #include "base/live_clock.h"
+#include "ros2/helper_graph.h"
 #include "ros2/process_finder.h"
 #include "ros2/type_description.h"
 #include "rtps/origins.h"
@@ -45,8 +46,9 @@ Graph::Options Context::with_context(Graph::Options options) {
   return options;
 }
 
-// Behind a discovery server, or a helper program, all come from one address.
+// Behind a discovery server all come from one address.
 std::string Context::source_of(const ParticipantInfo& info) const {
+  if (has_helper_) return HelperGraph::source_of(info);
   if (has_server_) return "";
   const std::vector<UdpAddress> from = participant_->origin_of(info.guid.prefix()).addresses;
   if (from.empty()) return "unknown";
@@ -82,7 +84,8 @@ FoundProcess Context::find_process(const Graph::FindProcess& find, ParticipantIn
 
 Expected<void> Context::open(const ParticipantOptions& options) {
   gid_size_ = options.gid_size;
-  has_server_ = !options.servers.empty() || options.helper != nullptr;
+  has_server_ = !options.servers.empty();
+  has_helper_ = options.helper != nullptr;
   auto participant =
       Participant::create(options, [this](DiscoveryEvent event) { hear(std::move(event)); });
   if (!participant) return Error{participant.error()};

@@ -106,6 +106,7 @@ class Context {
   std::optional<GidSize> gid_size_;
   bool is_deciding_ = false;
   bool has_server_ = false;
+  bool has_helper_ = false;
   std::set<GuidPrefix> lost_;  // participants whose leases ran out
   bool is_listening_anew_ = false;
   DiscoveryCallback discovery_listener_;  // may be empty

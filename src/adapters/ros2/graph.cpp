@@ -162,12 +162,13 @@ Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
       warn_of_limit("nodes");
       break;
     }
+    const std::size_t most = (is_component(*name) ? 2 : 1) * options_.limits.endpoints;
     std::set<Guid>& endpoints = claims[*name];
     for (const auto* guids : {&node.readers, &node.writers}) {
       for (const Guid& guid : *guids) {
         if (guid.prefix() != info.participant.prefix())
           continue;  // a participant announces only itself
-        if (!endpoints.contains(guid) && claim_count_ >= options_.limits.endpoints) {
+        if (!endpoints.contains(guid) && claim_count_ >= most) {
           warn_of_limit("endpoints");
           return claims;
         }
@@ -186,7 +187,8 @@ void Graph::add(const ParticipantInfo& info) {
   }
   const std::string source = options_.source_of ? options_.source_of(info) : "";
   const bool is_full = peers_.size() >= options_.limits.participants;
-  if (!has_room(source, &Source::participants, options_.limits.participants) &&
+  const bool is_reserved = is_of_robot(info) && peers_.size() < 2 * options_.limits.participants;
+  if (!is_reserved && !has_room(source, &Source::participants, options_.limits.participants) &&
       !(is_full && source.empty() && make_room()))
     return warn_of_limit("participants");
   Peer& peer = peers_[prefix];
@@ -203,7 +205,8 @@ void Graph::add(const EndpointInfo& info) {
     if (known->info.topic == info.topic && known->info.type == info.type)
       return;  // only its QoS or user data
     hide(info.guid);
-  } else if (!has_room(peer->second.source, &Source::endpoints, options_.limits.endpoints)) {
+  } else if (!has_room(peer->second.source, &Source::endpoints, options_.limits.endpoints) &&
+             !(is_of_robot(peer->second.info) && endpoint_count_ < 2 * options_.limits.endpoints)) {
     return warn_of_limit("endpoints");
   } else {
     ++endpoint_count_;
@@ -463,6 +466,11 @@ void Graph::count_namesakes(const std::string& name, Node& node) {
   const int others = std::max(static_cast<int>(all.size()) - 1, 0);
   if (std::exchange(node.namesakes, others) != others)
     tell(NodeNamesakes{name, others, std::move(all)});
+}
+
+bool Graph::is_of_robot(const ParticipantInfo& participant) const {
+  return std::ranges::any_of(participant.nodes,
+                             [this](const std::string& node) { return is_component(node); });
 }
 
 bool Graph::is_component(const std::string& name) const {

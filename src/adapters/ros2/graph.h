@@ -114,7 +114,7 @@ class Graph {
   struct Limits {
     std::size_t participants = 1000;
     std::size_t nodes = 10'000;
-    std::size_t endpoints = 100'000;  // discovered, and as many again claimed
+    std::size_t endpoints = 100'000;  // discovered, and as many again claimed; twice for components
   };
   // Asked for each node that a participant comes to hold: new evidence against it may have come
   // since the last call.
@@ -281,6 +281,8 @@ class Graph {
   void count_namesakes(const std::string& name, Node& node);
   void warn_of_limit(const char* what);
   bool is_component(const std::string& name) const;
+  // Whether its announcement names a component: it has room beyond the limits, as many again.
+  bool is_of_robot(const ParticipantInfo& participant) const;
   bool has_room(const std::string& source, std::size_t Source::*what, std::size_t limit,
                 std::size_t more = 0) const;
   bool make_room();

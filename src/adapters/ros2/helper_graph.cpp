@@ -263,10 +263,16 @@ std::vector<HelperGraph::Change> HelperGraph::take(const SeenGraph& seen, Missin
     for (const auto& [guid, endpoint] : peer.endpoints)
       by_topic_[{endpoint.topic, guid.is_reader()}].insert(guid);
   }
+  // A node may make ever new services.
   std::erase_if(made_, [this](const auto& each) {
-    return !peers_.contains(std::get<GuidPrefix>(each.first));
+    const auto peer = peers_.find(std::get<GuidPrefix>(each.first));
+    return peer == peers_.end() || !peer->second.endpoints.contains(each.second);
   });
   return changes;
+}
+
+std::string HelperGraph::source_of(const ParticipantInfo& participant) {
+  return participant.host == host_name() ? "" : participant.host;
 }
 
 std::vector<DiscoveryInfo> HelperGraph::infos() const {

@@ -36,6 +36,10 @@ class HelperGraph {
   // `middleware`: "rmw_fastrtps_cpp". `own`: the id of an endpoint of the helper.
   void begin(const std::string& middleware, const culprit_link::Gid& own, std::string own_node);
 
+  // The source (Graph::SourceOf) of a participant: this machine, or all other computers together, since a middleware shows
+  // no addresses.
+  static std::string source_of(const ParticipantInfo& participant);
+
   // Returns the changes since the last graph, in an order that discovery could have had.
   std::vector<Change> take(const culprit_link::GraphSeen& seen, Missing missing);
   // Whether something is kept that the last graph did not have.

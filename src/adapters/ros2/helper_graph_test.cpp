@@ -53,6 +53,9 @@ class Fed {
       if (const auto* left = std::get_if<EndpointLeft>(&change))
         told.push_back("-" + left->node + left->name);
     };
+    options.is_component = [](const std::string& node) { return node == "/camera"; };
+    options.source_of = HelperGraph::source_of;
+    options.limits = {.participants = 20, .nodes = 20, .endpoints = 20};
     return options;
   }()};
 };
@@ -74,6 +77,50 @@ TEST(HelperGraph, TellsOfNodesWithTheirEndpointsAndServices) {
   const auto told = fed.take_told();
   ASSERT_EQ(told.size(), 3U);
   EXPECT_EQ(told.back(), "-/camera");
+}
+
+// They come all at once, before the robot's.
+TEST(HelperGraph, AThousandStrangersLeaveRoomForAComponent) {
+  Fed fed;
+  GraphSeen seen = camera(60'000);
+  for (int i = 0; i < 1000; ++i) {
+    const std::string name = "n" + std::to_string(i);
+    seen.nodes.push_back({"/", name});
+    seen.endpoints.push_back(publisher(name, "/light", gid_of(i + 1, 1)));
+  }
+  fed.take(seen);
+  const auto told = fed.take_told();
+  for (const char* wanted : {"+/camera", "+/camera/light", "+/camera/camera/get_state"})
+    EXPECT_NE(std::ranges::find(told, wanted), told.end()) << wanted;
+  EXPECT_EQ(fed.graph.participants().size(), 21U);
+}
+
+TEST(HelperGraph, StrangersOfOtherComputersTakeAQuarterOfTheRoom) {
+  Fed fed;
+  GraphSeen seen;
+  for (int i = 0; i < 1000; ++i) {
+    Gid gid = gid_of(i + 1, 1);
+    gid[2] = 8;  // of its computer
+    seen.endpoints.push_back(publisher("n" + std::to_string(i), "/light", gid));
+  }
+  fed.take(seen);
+  EXPECT_EQ(fed.graph.participants().size(), 5U);
+}
+
+TEST(HelperGraph, ForgetsServicesThatAreGone) {
+  Fed fed;
+  const auto server = [&fed] {
+    const auto& all = fed.helper.matching("rq/camera/get_stateRequest", EndpointRole::kWriter);
+    return all.empty() ? Guid() : *all.begin();
+  };
+  fed.take(camera(300));
+  const Guid first = server();
+  GraphSeen without = camera(300);
+  without.services.clear();
+  fed.take(without);
+  EXPECT_EQ(server(), Guid());
+  fed.take(camera(300));
+  EXPECT_NE(server(), first) << "nothing is kept of each name that there ever was";
 }
 
 TEST(HelperGraph, KnowsTheProcessThatFastDdsAnnouncesAndTheNodesOfIt) {

@@ -175,6 +175,7 @@ class Helped final : public Participant::Impl {
   void look_at_receivers(Time) override {}
   Time receivers_attended() const override { return kNever; }
   DatagramFilter::Refused refused() const override { return {}; }
+  std::uint64_t dropped_here() const override { return 0; }
 
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options,
                                                   SampleCallback on_sample) override;

@@ -450,6 +450,7 @@ class DdsParticipant final : public Participant::Impl {
   }
   Time receivers_attended() const override { return watch_.attended(); }
   DatagramFilter::Refused refused() const override { return reception_.filter->refused(); }
+  std::uint64_t dropped_here() const override { return reception_.thread->dropped(); }
 
  private:
   // A participant announces itself again and again, mostly unchanged.
@@ -525,6 +526,7 @@ Time Participant::own_came_through() const { return impl_->own_came_through(); }
 void Participant::look_at_receivers(Time now) { impl_->look_at_receivers(now); }
 Time Participant::receivers_attended() const { return impl_->receivers_attended(); }
 DatagramFilter::Refused Participant::refused() const { return impl_->refused(); }
+std::uint64_t Participant::dropped_here() const { return impl_->dropped_here(); }
 
 Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
                                                            DiscoveryCallback on_discovery) {

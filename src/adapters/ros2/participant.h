@@ -231,6 +231,8 @@ class Participant {
   Time receivers_attended() const;
   // The datagrams that were kept from the middleware.
   DatagramFilter::Refused refused() const;
+  // Datagrams that our own full sockets dropped so far (ReceiveThread). Within the callback of a sample: before it.
+  std::uint64_t dropped_here() const;
 
   // An error when the middleware refuses: one participant cannot have a topic with two types.
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample);

@@ -45,6 +45,7 @@ class Participant::Impl {
   virtual void look_at_receivers(Time now) = 0;
   virtual Time receivers_attended() const = 0;
   virtual DatagramFilter::Refused refused() const = 0;
+  virtual std::uint64_t dropped_here() const = 0;
 
   virtual Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options,
                                                           SampleCallback on_sample) = 0;

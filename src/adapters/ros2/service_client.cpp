@@ -40,7 +40,10 @@ Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
 }
 
 ServiceClient::ServiceClient(NodeEntry& node)
-    : node_(node), again_after_(kSoonestAgain), tasks_(node.context().executor()) {}
+    : node_(node),
+      again_after_(kSoonestAgain),
+      tasks_(node.context().executor()),
+      update_servers_soon_(tasks_, [this] { update_servers(); }) {}
 
 // A client with kSoon repeats a request itself if it is lost, so answers need no acknowledgements.
 // And only the last request is kept, so that Fast DDS asks for the acknowledgement of each with the
@@ -227,7 +230,7 @@ void ServiceClient::on_request_reader(const Guid& reader, Match match) {
   } else {
     request_readers_.erase(reader);
   }
-  update_servers();
+  update_servers_soon_.post();
 }
 
 void ServiceClient::on_reply_writer(const Guid& writer, Match match) {
@@ -236,7 +239,7 @@ void ServiceClient::on_reply_writer(const Guid& writer, Match match) {
   } else {
     reply_writers_.erase(writer);
   }
-  update_servers();
+  update_servers_soon_.post();
 }
 
 void ServiceClient::update_servers() {

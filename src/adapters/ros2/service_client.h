@@ -36,6 +36,7 @@
 #include "ros2/executor.h"
 #include "ros2/participant.h"
 #include "ros2/service_mapping.h"
+#include "ros2/soon_task.h"
 #include "rtps/cdr.h"
 #include "rtps/guid.h"
 
@@ -170,6 +171,7 @@ class ServiceClient {
   std::int64_t header_sequence_ CULPRIT_GUARDED_BY(mutex_) = 0;
 
   TaskGroup tasks_;  // outlives those that post to it
+  SoonTask update_servers_soon_;
 
   // Set once, with the mutex.
   std::unique_ptr<Reader> reply_reader_;

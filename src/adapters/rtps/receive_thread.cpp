@@ -42,13 +42,15 @@ Error refused(const char* what) { return Error{std::string(what) + ": " + std::s
 }  // namespace
 
 struct ReceiveThread::Socket {
-  Socket(int fd, const Place& place, OnDatagram callback)
+  // `all_dropped`: of all sockets.
+  Socket(int fd, const Place& place, OnDatagram callback, std::atomic<std::uint64_t>& all_dropped)
       : descriptor(fd),
         room(room_of(fd)),
         port(place.port),
         largest(std::min(place.largest, kLargest)),
         has_time(place.has_time),
         on_datagram(std::move(callback)),
+        dropped(all_dropped),
         is_patient(place.haste == Haste::kSoon) {}
   ~Socket() { ::close(descriptor); }
   Socket(const Socket&) = delete;
@@ -60,6 +62,8 @@ struct ReceiveThread::Socket {
   const std::uint32_t largest;
   const HasTime has_time;
   const OnDatagram on_datagram;
+  std::atomic<std::uint64_t>& dropped;
+  std::uint32_t dropped_here = 0;         // as the kernel counts, which begins anew after 2^32
   bool is_patient;                        // guarded by the mutex of the thread's owner
   Clock::time_point busy = Clock::now();  // when something came last that has no time
   bool is_calm = false;                   // something came since, and has
@@ -68,12 +72,22 @@ struct ReceiveThread::Socket {
   struct Kept {
     UdpAddress from;
     SystemTime received;
+    std::uint32_t dropped;  // before it
     std::vector<std::uint8_t> bytes;
   };
   std::deque<Kept> kept;
   std::size_t kept_bytes = 0;  // with the overhead of each datagram, which may be empty
 
   static std::size_t bytes_of(const Kept& each) { return sizeof(Kept) + each.bytes.size(); }
+
+  void hand_on(const Datagram& datagram, std::uint32_t dropped_before) {
+    const std::uint32_t more = dropped_before - dropped_here;
+    if (static_cast<std::int32_t>(more) > 0) {
+      dropped += more;
+      dropped_here = dropped_before;
+    }
+    on_datagram(datagram);
+  }
 
   void look_at(std::span<const std::uint8_t> datagram) {
     if (!has_time) return;
@@ -118,22 +132,30 @@ class ReceiveThread::Batch {
   void hand_to(Socket& socket) {
     for (std::size_t i = 0; i < count_; ++i) {
       socket.look_at(bytes(i));
-      socket.on_datagram({bytes(i), sender(i), received(i)});
+      const Notes notes = notes_of(i);
+      socket.hand_on({bytes(i), sender(i), notes.received}, notes.dropped);
     }
   }
   void keep_for(Socket& socket) {
     for (std::size_t i = 0; i < count_; ++i) {
       const auto all = bytes(i);
       socket.look_at(all);
-      socket.kept.push_back({sender(i), received(i), {all.begin(), all.end()}});
+      const Notes notes = notes_of(i);
+      socket.kept.push_back({sender(i), notes.received, notes.dropped, {all.begin(), all.end()}});
       socket.kept_bytes += Socket::bytes_of(socket.kept.back());
     }
   }
 
  private:
-  // The kernel's timestamp of arrival, for a socket that has time.
+  // Room for the notes of the kernel beside a datagram.
   struct Note {
-    alignas(cmsghdr) std::array<std::uint8_t, CMSG_SPACE(sizeof(timespec))> bytes;
+    static constexpr std::size_t kSize =
+        CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t));
+    alignas(cmsghdr) std::array<std::uint8_t, kSize> bytes;
+  };
+  struct Notes {
+    SystemTime received;        // for a socket that has time
+    std::uint32_t dropped = 0;  // of this socket, before it
   };
 
   std::span<std::uint8_t> bytes(std::size_t i) {
@@ -146,14 +168,20 @@ class ReceiveThread::Batch {
     return from;
   }
 
-  SystemTime received(std::size_t i) const {
-    const msghdr& head = messages_[i].msg_hdr;
-    const cmsghdr* note = CMSG_FIRSTHDR(&head);
-    if (note == nullptr || note->cmsg_level != SOL_SOCKET || note->cmsg_type != SCM_TIMESTAMPNS)
-      return taken_;
-    timespec when{};
-    std::memcpy(&when, CMSG_DATA(note), sizeof when);
-    return SystemTime(std::chrono::seconds(when.tv_sec) + std::chrono::nanoseconds(when.tv_nsec));
+  Notes notes_of(std::size_t i) {
+    Notes notes{taken_};
+    msghdr& head = messages_[i].msg_hdr;
+    for (cmsghdr* each = CMSG_FIRSTHDR(&head); each != nullptr; each = CMSG_NXTHDR(&head, each)) {
+      if (each->cmsg_level != SOL_SOCKET) continue;
+      if (each->cmsg_type == SO_RXQ_OVFL)
+        std::memcpy(&notes.dropped, CMSG_DATA(each), sizeof notes.dropped);
+      if (each->cmsg_type != SCM_TIMESTAMPNS) continue;
+      timespec when{};
+      std::memcpy(&when, CMSG_DATA(each), sizeof when);
+      notes.received =
+          SystemTime(std::chrono::seconds(when.tv_sec) + std::chrono::nanoseconds(when.tv_nsec));
+    }
+    return notes;
   }
 
   const std::unique_ptr<std::uint8_t[]> bytes_;
@@ -187,7 +215,8 @@ Expected<void> ReceiveThread::open(const Place& place, OnDatagram on_datagram) {
   const int wanted = 1;
   const int buffer = static_cast<int>(place.buffer);
   if (buffer > 0) setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
-  auto made = std::make_shared<Socket>(descriptor, place, std::move(on_datagram));
+  auto made = std::make_shared<Socket>(descriptor, place, std::move(on_datagram), dropped_);
+  setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &wanted, sizeof wanted);
   if (place.haste == Haste::kSoon)
     setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &wanted, sizeof wanted);
   if (place.is_shared) setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &wanted, sizeof wanted);
@@ -338,7 +367,7 @@ void ReceiveThread::take_urgent(Socket& socket, Batch& batch, const Sockets& pat
     Socket::Kept first = std::move(socket.kept.front());
     socket.kept.pop_front();
     socket.kept_bytes -= Socket::bytes_of(first);
-    socket.on_datagram({first.bytes, first.from, first.received});
+    socket.hand_on({first.bytes, first.from, first.received}, first.dropped);
   }
 }
 

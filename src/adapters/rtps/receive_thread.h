@@ -16,10 +16,14 @@
 // each datagram. A caller that waits for an answer there makes them hurry meanwhile
 // (begin_hurry()).
 //
+// A socket that is not read fast enough is full, and the kernel drops what comes then. It tells how much with the next
+// datagram there (SO_RXQ_OVFL), so a reader can distinguish that from what was lost on the way.
+//
 // A socket for announcements has time only while nothing else comes there (Place::has_time): in a
 // robot at rest each participant repeats again and again that it is there.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -90,6 +94,10 @@ class ReceiveThread {
   // Calls `on_round`, on the thread that receives, whenever it has handed on what came together.
   void on_round(std::function<void()> on_round);
 
+  // Datagrams that the kernel dropped because a socket was full: of each socket, those before the datagram that was handed
+  // on last.
+  std::uint64_t dropped() const { return dropped_; }
+
   // Calls `look` with all sockets, which stay open meanwhile. It must be short.
   void look_at_sockets(const std::function<void(std::span<const int> descriptors)>& look) const;
 
@@ -114,6 +122,7 @@ class ReceiveThread {
   const int wait_fd_;  // of epoll
   const int wake_fd_;  // to end
 
+  std::atomic<std::uint64_t> dropped_ = 0;
   mutable Mutex mutex_;
   ConditionVariable round_ended_;
   Sockets sockets_ CULPRIT_GUARDED_BY(mutex_);

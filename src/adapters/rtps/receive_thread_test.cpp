@@ -313,6 +313,27 @@ TEST(ReceiveThread, AllThatLiesInASocketIsTakenBeforeItsTurnComes) {
   for (std::size_t i = 0; i < 42; ++i) EXPECT_EQ(ears.heard.all()[i], std::to_string(i));
 }
 
+// More than any buffer of a socket holds.
+TEST(ReceiveThread, CountsWhatItsFullSocketsDropped) {
+  HeldListener ears;
+  const Voice speaker;
+  const std::uint16_t port = ears.open_held("", {"0"});
+  speaker.say(port, "0");
+  EXPECT_TRUE(ears.heard.wait_for_count(1));
+  constexpr std::size_t kSent = 2000;
+  const std::string large(8000, 'x');
+  for (std::size_t i = 0; i < kSent; ++i) speaker.say(port, large);
+  EXPECT_EQ(ears.thread.dropped(), 0u) << "no datagram after them has been handed on";
+  ears.go_on.release();
+  EXPECT_TRUE(ears.heard.wait_for_count(2));
+  while (ears.bytes_in_sockets() > 0) std::this_thread::yield();
+  speaker.say(port, "end");
+  ASSERT_TRUE(ears.heard.wait_for_one([](const auto& text) { return text == "end"; }));
+  const std::size_t received = ears.heard.all().size() - 2;  // without "0" and "end"
+  EXPECT_LT(received, kSent);
+  EXPECT_EQ(ears.thread.dropped(), kSent - received);
+}
+
 TEST(ReceiveThread, WhatWasKeptLeavesOthersTheirTurn) {
   HeldListener ears;
   const Voice speaker;

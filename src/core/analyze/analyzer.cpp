@@ -200,7 +200,9 @@ bool Analyzer::is_left_down(GroupId group, const Attempt& attempt, Time now) con
 
 void Analyzer::detect(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
-  const bool recurs = state.gone_since != kLongAgo && now < later(state.gone_since, kRecurs);
+  const bool was_repaired = std::exchange(state.was_repaired, false);
+  const bool recurs =
+      !was_repaired && state.gone_since != kLongAgo && now < later(state.gone_since, kRecurs);
   // A rule with ON_CHANGE acts on each edge.
   const bool is_same = state.search.times > 0 && !is_proven(state.gone_since, now) &&
                        !knowledge_.rules[id].policies.on_change;
@@ -618,6 +620,7 @@ void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
   RuleState& state = write_.states.state(id);
   how.reaction = now - state.failing_since;
   state.quiet_until = later(now, knowledge_.rules[id].policies.cooldown);
+  state.was_repaired = how.strategy.has_value();
   leave(id, now);
   if (!how.strategy && state.search.attempts == state.search.attempts_before)
     couplings_.cleared(id, now);

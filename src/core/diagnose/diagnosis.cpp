@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "diagnose/known_down.h"
 #include "diagnose/still_there.h"
+#include "diagnose/touched.h"
 
 namespace culprit::diagnose {
 
@@ -15,8 +17,10 @@ double own_cause(double prior, double explained) {
 Diagnosis::Diagnosis(const Knowledge& knowledge, const Causes& causes)
     : knowledge_(knowledge),
       causes_(causes),
+      twins_(causes.size()),
       against_others_(causes.size()),
       claims_(causes.size(), 0) {
+  find_twins();
   for (std::size_t i = 0; i < causes.size(); ++i) {
     const bool is_sure = !causes[i].is_rule() || is_known_dead(i) || hangs_by_itself(i);
     prior_.push_back(is_sure ? kKnownDown : kCoincidence);
@@ -27,13 +31,41 @@ Diagnosis::Diagnosis(const Knowledge& knowledge, const Causes& causes)
     if (loop.size() > 1) divide(loop);
   }
   for (std::size_t i = 0; i < own_.size(); ++i) {
-    for_each(causes.causes(i), [&](std::size_t j) { claims_[i] += passes(j, i) * own_[j]; });
+    for_each(causes.causes(i), [&](std::size_t j) {
+      if (!has_better_twin(j, i)) claims_[i] += passes(j, i) * own_[j];
+    });
   }
 }
 
 double Diagnosis::share(std::size_t j, std::size_t i) const {
-  if (!has(causes_.causes(i), j)) return 0;
+  if (!has(causes_.causes(i), j) || has_better_twin(j, i)) return 0;
   return (1 - own_[i]) * passes(j, i) * own_[j] / claims_[i];
+}
+
+void Diagnosis::find_twins() {
+  std::vector<std::pair<ComponentId, std::size_t>> exhausted;  // what it is about, and the failure
+  for (std::size_t i = 0; i < causes_.size(); ++i) {
+    const CauseNode& node = causes_[i];
+    if (node.kind != CauseNode::Kind::kFailure || !knowledge_.states.awaits_person(node.rule))
+      continue;
+    for (const ComponentId c : touched_by(node.rule, knowledge_)) exhausted.emplace_back(c, i);
+  }
+  std::ranges::sort(exhausted);
+  for (auto a = exhausted.begin(); a != exhausted.end(); ++a) {
+    for (auto b = a + 1; b != exhausted.end() && b->first == a->first; ++b) {
+      twins_[a->second].push_back(b->second);
+      twins_[b->second].push_back(a->second);
+    }
+  }
+}
+
+bool Diagnosis::has_better_twin(std::size_t j, std::size_t i) const {
+  return std::ranges::any_of(twins_[j], [&](std::size_t twin) {
+    if (!has(causes_.causes(i), twin)) return false;
+    const double of_twin = passes(twin, i);
+    const double of_j = passes(j, i);
+    return of_twin > of_j || (of_twin == of_j && twin < j);
+  });
 }
 
 bool Diagnosis::is_explained_by(std::size_t i, std::size_t j) const {
@@ -77,7 +109,9 @@ double Diagnosis::kappa(std::size_t j, std::size_t i) const {
 
 double Diagnosis::explained(std::size_t i) const {
   double unexplained = 1;
-  for_each(causes_.causes(i), [&](std::size_t j) { unexplained *= 1 - passes(j, i); });
+  for_each(causes_.causes(i), [&](std::size_t j) {
+    if (!has_better_twin(j, i)) unexplained *= 1 - passes(j, i);
+  });
   return 1 - unexplained;
 }
 

@@ -7,7 +7,9 @@
 //   j           the nodes that may be its cause
 //   kappa       how surely i clears when j is resolved (knowledge/couplings.h)
 //   g           how likely i came so late after j (Causes::timely)
-//   X_i         the probability that one of the others explains i; 0 (so P = 1) if there is none
+//   X_i         the probability that one of the others explains i; 0 (so P = 1) if there is none.
+//               Failures that wait for a person and are about the same component are one cause: of
+//               these, the product takes only the one with the highest kappa g
 //   pi_i        the probability that i has a cause of its own, before anything else is known of it:
 //               kKnownDown if a strategy of i would replace a process that the operating system
 //               says is gone or stopped, or that hangs by itself (known_down.h), and for troubles;
@@ -67,7 +69,7 @@ class Diagnosis {
   // dead.
   std::optional<std::size_t> dead_in_loop(std::size_t i) const;
   // The part of 1 - R_i (which others explain) that falls to node j: in proportion to kappa(j -> i)
-  // g(j -> i) R_j.
+  // g(j -> i) R_j; 0 if X_i does not take j.
   double share(std::size_t j, std::size_t i) const;
   // The same for all causes of i outside its loop: calls visit(j, share).
   template <class Visit>
@@ -82,11 +84,16 @@ class Diagnosis {
   bool is_enough(std::size_t j, std::size_t i) const;
   // kappa g
   double passes(std::size_t j, std::size_t i) const { return kappa(j, i) * causes_.timely(j, i); }
+  void find_twins();
+  // Is there a twin of j that explains i better, or as well and comes first?
+  bool has_better_twin(std::size_t j, std::size_t i) const;
   void divide(const std::vector<std::size_t>& loop);
   double weight(std::size_t i, const std::vector<std::size_t>& loop, Time first) const;
 
   const Knowledge& knowledge_;
   const Causes& causes_;
+  // By node: other failures that are about one of its components, if it and they wait for a person.
+  std::vector<std::vector<std::size_t>> twins_;
   std::vector<double> prior_;  // pi_i
   std::vector<double> against_others_;
   std::vector<double> own_;

@@ -79,6 +79,40 @@ TEST(Diagnosis, FallsToTheFailureWithNoFailureUpstream) {
   EXPECT_DOUBLE_EQ(own(scene, "C"), own_cause(kPi, 1 - (1 - kKappa) * (1 - kKappa)));
 }
 
+// The camera was given up long before, by one rule or by two: it is one cause, and one that hardly explains what
+// fails now.
+TEST(Diagnosis, TwoExhaustedFailuresOfAComponentAreOneCause) {
+  const auto own_of = [](const std::string& second_on) {
+    Scene scene(failure_of("a", "A") + failure_of("b", "B") +
+                "COMPONENT aside NODE /aside\nRULE Again\nPOLICIES ERROR\nTRIGGER y > 1\n"
+                "STRATEGY again 50 10\nADAPTATION " +
+                second_on + " restart 2\n");
+    scene.link("a", "b").link("aside", "b").exhaust("A").exhaust("Again").fail("B");
+    for (const std::string rule : {"A", "Again"})
+      scene->states.state(scene.rule(rule)).onset = Onset{Time(20s), Time(20s)};
+    scene->states.state(scene.rule("B")).worked_until = Time(85s);
+    return own(scene, "B");
+  };
+  const double passes = kKappa * 5 / 65;
+  EXPECT_DOUBLE_EQ(own_of("a"), own_cause(kPi, passes));
+  EXPECT_DOUBLE_EQ(own_of("aside"), own_cause(kPi, 1 - (1 - passes) * (1 - passes)));
+}
+
+// The second rule takes nothing from what another cause explains.
+TEST(Diagnosis, ASecondExhaustedFailureOfAComponentHasNoShare) {
+  Scene scene(failure_of("a", "A") + failure_of("b", "B") +
+              "RULE Again\nPOLICIES ERROR\nTRIGGER y > 1\nSTRATEGY again 50 10\n"
+              "ADAPTATION a restart 2\n");
+  scene.link("a", "b").exhaust("A").exhaust("Again").fail("B");
+  const Examination found(*scene, scene->states.active());
+  const auto share_of = [&](const std::string& rule) {
+    return found.diagnosis().share(found.causes().index_of(scene.rule(rule)),
+                                   found.causes().index_of(scene.rule("B")));
+  };
+  EXPECT_DOUBLE_EQ(share_of("A"), 1 - own_cause(kPi, kKappa));
+  EXPECT_EQ(share_of("Again"), 0);
+}
+
 // A began after B. It explains B only if B outlasts an earlier cause, or its own new beginning.
 TEST(Diagnosis, AnEffectThatOutlastsItsFirstCauseMayHaveALaterOne) {
   Scene scene = chain();

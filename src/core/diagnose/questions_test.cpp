@@ -137,5 +137,23 @@ TEST_F(AMap, HungBeforeItsRuleNoticed) {
   EXPECT_EQ(onset.latest, Time(99s));
 }
 
+// One probe without an answer is not enough, so it is found later. A busy one may publish meanwhile.
+TEST_F(AMap, HungWhenTheFirstProbeGotNoAnswerAndItsLastMessageHadCome) {
+  ComponentState& map = state("map");
+  map.answered = Time(80s);
+  map.alive = false;
+  map.alive_since = Time(99s);
+  map.missed_probes = 3;
+  map.missed_since = Time(82s);
+  EXPECT_EQ(onset_of_hang(scene_.component("map"), *scene_).latest, Time(82s));
+  scene_->graph.endpoint_appeared("/map", EndpointKind::kPublisher, "/cmd");
+  SignalStore::Rhythm rhythm;
+  rhythm.last = Time(90s);
+  scene_->signals.set_rhythm(TopicId(0u), rhythm);
+  EXPECT_EQ(onset_of_hang(scene_.component("map"), *scene_).latest, Time(90s));
+  map.missed_probes = 0;  // another node of its process hangs
+  EXPECT_EQ(onset_of_hang(scene_.component("map"), *scene_).latest, Time(99s));
+}
+
 }  // namespace
 }  // namespace culprit::diagnose

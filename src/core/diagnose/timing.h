@@ -45,7 +45,7 @@ bool watches_a_component(const Input& input);
 bool tells_of_data(RuleId rule, const RuleSet& rules);
 
 // A topic counts as silent after this many of its usual gaps.
-inline constexpr int kSilentGaps = 2;
+inline constexpr int kSilentGaps = SignalStore::Rhythm::kSilentGaps;
 // Evidence that takes longer than this is not waited for.
 inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
 
@@ -53,8 +53,9 @@ inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
 
 // For a component that hangs, or did not answer a probe: its failure may have begun right after its
-// last answer.
-Onset onset_of_hang(const ComponentState& state);
+// last answer, and had begun when the first probe got none and its last message had come. Only several
+// such probes show that it hangs.
+Onset onset_of_hang(ComponentId component, const Knowledge& knowledge);
 // How long after a change the rule reads it at the latest, besides its lateness: the period of its
 // signal, and the window that it looks at.
 Duration reading_of(RuleId rule, const Knowledge& knowledge);

@@ -17,7 +17,7 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, const Knowledge& k
     return TroubleSeen{Trouble::kStopped, at(state.process_since)};
   if (!knowledge.discovered.has(component)) return TroubleSeen{Trouble::kNeverSeen, at(kLongAgo)};
   if (state.hangs() || is_overdue(component, knowledge))
-    return TroubleSeen{Trouble::kHung, onset_of_hang(state)};
+    return TroubleSeen{Trouble::kHung, onset_of_hang(component, knowledge)};
   if (state.alive == false) return TroubleSeen{Trouble::kLeft, at(state.alive_since)};
   // When it went down is not known.
   if (state.is_coming_up()) return TroubleSeen{Trouble::kStarting, {kLongAgo, state.process_since}};
@@ -88,8 +88,8 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
       continue;
     const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);
     if (component && !all[component->index] && !knowledge.is_unheard(*component))
-      all[component->index] =
-          TroubleSeen{Trouble::kSilent, {*rhythm.last, later(rhythm.silent_since(), rhythm.gap)}};
+      all[component->index] = TroubleSeen{
+          Trouble::kSilent, {*rhythm.last, later(rhythm.silent_since(), rhythm.gap)}, topic};
   }
   return all;
 }

@@ -30,6 +30,7 @@ bool answers_nothing(Trouble trouble);
 struct TroubleSeen {
   Trouble trouble = Trouble::kExited;
   Onset onset;
+  std::optional<TopicId> topic{};  // kSilent: that is silent
 };
 
 // The worst known trouble of the component now; empty: no trouble is known. A component on an

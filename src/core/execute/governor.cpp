@@ -299,13 +299,13 @@ bool Governor::withholds(StrategyId strategy, Time now) {
   write_.withheld[strategy.index] = {held->reason, held->until,
                                      held->restraint == Restraint::kRestarts};
   withheld_.push_back(strategy);
-  tell(strategy, *longer(held, restraint_on_all(now)), now);
+  tell({strategy}, *longer(held, restraint_on_all(now)), now);
   return true;
 }
 
-bool Governor::holds_back(StrategyId strategy, Time now) {
+bool Governor::holds_back(ActionHeldBack chosen, Time now) {
   const auto held = restraint_on_all(now);
-  if (held) tell(strategy, *held, now);
+  if (held) tell(std::move(chosen), *held, now);
   return held.has_value();
 }
 
@@ -337,7 +337,7 @@ bool Governor::holds_last_resort_back(StrategyId strategy, std::optional<std::st
                                       Time now) {
   auto held = restraint_on_last_resort(strategy, now);
   if (!held && obstacle) held = Held{Restraint::kImpossible, std::move(*obstacle), kNever};
-  if (held) tell(strategy, *held, now);
+  if (held) tell({strategy}, *held, now);
   return held.has_value();
 }
 
@@ -467,12 +467,15 @@ bool Governor::awaits_approval(const ApprovalAsked& choice, Time now) {
   return true;
 }
 
-void Governor::tell(StrategyId strategy, const Held& held, Time now) {
-  Told& told = told_[strategy.index];
-  const Time since = knowledge_.states[knowledge_.rules[strategy].rule].failing_since;
+void Governor::tell(ActionHeldBack what, const Held& held, Time now) {
+  Told& told = told_[what.strategy.index];
+  const Time since = knowledge_.states[knowledge_.rules[what.strategy].rule].failing_since;
   if (told.failing_since == since && told.restraint == held.restraint) return;
   told = {since, held.restraint};
-  write_.events.tell(now, ActionHeldBack{strategy, held.restraint, held.reason, held.until});
+  what.restraint = held.restraint;
+  what.reason = held.reason;
+  what.until = held.until;
+  write_.events.tell(now, std::move(what));
 }
 
 void Governor::began(StrategyId strategy, Time now) {

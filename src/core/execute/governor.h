@@ -87,8 +87,8 @@ class Governor {
   // (Knowledge::withheld), so that a new plan finds the alternatives, and an event reports it.
   bool withholds(StrategyId strategy, Time now);
   // Whether everything has to wait now, the strategy that was chosen too. If so, an event reports
-  // it.
-  bool holds_back(StrategyId strategy, Time now);
+  // it: `chosen` with the reason.
+  bool holds_back(ActionHeldBack chosen, Time now);
   // Whether the last resort has to wait: for a person who paused or muted, or because of `obstacle`,
   // which keeps it from being carried out. No limit holds it. If so, an event reports it.
   bool holds_last_resort_back(StrategyId strategy, std::optional<std::string> obstacle, Time now);
@@ -134,7 +134,7 @@ class Governor {
   // Holds against a person's order, too.
   std::optional<Held> interlock() const;
   Time comes_up_by(ComponentId component) const;
-  void tell(StrategyId strategy, const Held& held, Time now);
+  void tell(ActionHeldBack what, const Held& held, Time now);
   Question* question_of(StrategyId strategy);
   const Question* question_of(StrategyId strategy) const;
   bool is_open(const Question& question) const;

@@ -1,6 +1,7 @@
 #include "execute/storm_watch.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "diagnose/imminent.h"
@@ -12,13 +13,14 @@ StormWatch::StormWatch(const Knowledge& knowledge, EventLog& events, Options opt
     : knowledge_(knowledge),
       events_(events),
       options_(options),
-      is_dead_(knowledge.rules.components.size()) {}
+      is_dead_(knowledge.rules.components.size()),
+      recent_(knowledge.rules.rules.size()) {}
 
 void StormWatch::advance(Time now) {
   if (options_.share <= 0) return;
   note(knowledge_.events);
   if (!std::exchange(has_news_, false) && !storm_) return;
-  if (auto seen = look()) {
+  if (auto seen = look(now)) {
     if (!storm_) events_.tell(now, StormBegan{seen->restraint, seen->reason});
     storm_ = std::move(seen);
     over_ = later(now, options_.calm);
@@ -34,8 +36,9 @@ bool StormWatch::is_much(std::size_t components) const {
          static_cast<double>(components) >= options_.share * all;
 }
 
-std::optional<StormWatch::Storm> StormWatch::look() {
+std::optional<StormWatch::Storm> StormWatch::look(Time now) {
   look_for_dead();
+  look_for_failures(now);
   const std::size_t all = knowledge_.rules.components.size();
   std::size_t unseen = 0;
   std::size_t out_of_reach = 0;
@@ -59,7 +62,8 @@ std::optional<StormWatch::Storm> StormWatch::look() {
                                                " are on another computer and do not answer; is it "
                                                "the network?"};
   }
-  if (knowledge_.states.active().size() < static_cast<std::size_t>(options_.least)) return {};
+  if (knowledge_.states.active().size() + lately_.size() < static_cast<std::size_t>(options_.least))
+    return {};
   std::size_t ill = ill_roots(std::vector<bool>(all));
   if (is_much(ill)) ill = ill_roots(all_suspects());
   if (is_much(ill))
@@ -80,6 +84,28 @@ void StormWatch::look_for_dead() {
   }
 }
 
+void StormWatch::look_for_failures(Time now) {
+  const auto is_recent = [&](Time began) { return now < later(began, options_.together); };
+  for (const RuleId id : knowledge_.states.active()) {
+    const RuleState& state = knowledge_.states[id];
+    if (!is_recent(state.failing_since)) continue;
+    Recent& recent = recent_[id.index];
+    if (recent.began == kLongAgo) lately_.push_back(id);
+    recent.began = state.failing_since;
+    // During an attempt it may be culprit that ended the process.
+    const auto& components = knowledge_.rules[id].components;
+    recent.has_clear_cause |=
+        !state.attempt &&
+        (knowledge_.unheard_behind(id) ||
+         std::ranges::any_of(components, [&](ComponentId c) { return is_dead_[c.index]; }));
+  }
+  std::erase_if(lately_, [&](RuleId id) {
+    if (is_recent(recent_[id.index].began)) return false;
+    recent_[id.index] = {};
+    return true;
+  });
+}
+
 // Components that look bad although no rule about them has fired: a rule may yet fire, or none is about
 // them.
 std::vector<bool> StormWatch::all_suspects() const {
@@ -93,19 +119,21 @@ std::vector<bool> StormWatch::all_suspects() const {
   return suspects;
 }
 
-// Components that a failing rule is about, and that nothing upstream explains.
+// Components that a failing rule is about, or one whose failure began a moment ago and is gone, and that
+// nothing upstream explains.
 std::size_t StormWatch::ill_roots(const std::vector<bool>& suspects) const {
+  std::vector<RuleId> failures = knowledge_.states.active();
+  std::ranges::copy_if(lately_, std::back_inserter(failures),
+                       [&](RuleId id) { return !knowledge_.states.is_active(id); });
   std::vector<ComponentId> roots;
-  for (const RuleId id : knowledge_.states.active()) {
+  for (const RuleId id : failures) {
     for (const ComponentId component : knowledge_.rules[id].components) {
-      // Its death is no riddle; it is to be brought back.
-      if (is_dead_[component.index] || knowledge_.unheard_behind(id)) continue;
+      if (has_clear_cause(id, component)) continue;
       const auto& upstream = knowledge_.graph.upstream(component);
       const bool is_explained =
           std::any_of(upstream.begin(), upstream.end(), [&](ComponentId other) {
             return other != component &&
-                   (is_dead_[other.index] || suspects[other.index] ||
-                    knowledge_.states.is_sick(other, Criticality::kNonCritical, id));
+                   (is_dead_[other.index] || suspects[other.index] || is_or_was_ill(other, id));
           });
       if (!is_explained) roots.push_back(component);
     }
@@ -113,6 +141,21 @@ std::size_t StormWatch::ill_roots(const std::vector<bool>& suspects) const {
   std::sort(roots.begin(), roots.end());
   roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
   return roots.size();
+}
+
+// The death of a component is no riddle; it is to be brought back.
+bool StormWatch::has_clear_cause(RuleId failure, ComponentId component) const {
+  const Recent& recent = recent_[failure.index];
+  if (recent.began != kLongAgo) return recent.has_clear_cause;
+  return is_dead_[component.index] || knowledge_.unheard_behind(failure);
+}
+
+// Is or was there a failure of it, other than that of `except`?
+bool StormWatch::is_or_was_ill(ComponentId component, RuleId except) const {
+  if (knowledge_.states.is_sick(component, Criticality::kNonCritical, except)) return true;
+  return std::ranges::any_of(knowledge_.states.touching(component), [&](RuleId rule) {
+    return rule != except && recent_[rule.index].began != kLongAgo;
+  });
 }
 
 }  // namespace culprit

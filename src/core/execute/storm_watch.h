@@ -2,9 +2,10 @@
 //
 // A storm: many components have failed that nothing upstream explains. (NodeHealthCheck's
 // minHealthy, with the dependency graph taken into account: a dead camera with all its consumers is
-// no storm, also before its own alarm; nor are exited processes, whose cause is clear.) A graph in doubt: nodes vanished from
-// the graph although their processes run, or those of other computers do not answer although these
-// are reachable. Then the network is more likely at fault than all of the nodes.
+// no storm, also before its own alarm; nor are exited processes, whose cause is clear.) Failures that
+// began within `together` count together, although some may have been repaired already. A graph in doubt:
+// nodes vanished from the graph although their processes run, or those of other computers do not answer
+// although these are reachable. Then the network is more likely at fault than all of the nodes.
 #pragma once
 
 #include <optional>
@@ -19,8 +20,9 @@ namespace culprit {
 class StormWatch {
  public:
   struct Options {
-    double share = 0;                         // of the components; 0: there are no storms
-    int least = 4;                            // so few are never a storm
+    double share = 0;  // of the components; 0: there are no storms
+    int least = 4;     // so few are never a storm
+    Duration together = std::chrono::seconds(2);
     Duration calm = std::chrono::seconds(5);  // it is over when it was not seen for so long
   };
   struct Storm {
@@ -39,10 +41,13 @@ class StormWatch {
   Time next_deadline() const { return storm_ ? over_ : kNever; }
 
  private:
-  std::optional<Storm> look();
+  std::optional<Storm> look(Time now);
   void look_for_dead();
+  void look_for_failures(Time now);
   std::vector<bool> all_suspects() const;
   std::size_t ill_roots(const std::vector<bool>& suspects) const;
+  bool is_or_was_ill(ComponentId component, RuleId except) const;
+  bool has_clear_cause(RuleId failure, ComponentId component) const;
   bool is_much(std::size_t components) const;
 
   const Knowledge& knowledge_;
@@ -53,6 +58,13 @@ class StormWatch {
   bool has_news_ = false;
   // By component: the operating system said that its process is gone, and it was not well since.
   std::vector<bool> is_dead_;
+  // By rule: of a failure that began within `together`, whether it is there still or not.
+  struct Recent {
+    Time began = kLongAgo;
+    bool has_clear_cause = false;  // its process exited, or its computer was unreachable
+  };
+  std::vector<Recent> recent_;
+  std::vector<RuleId> lately_;  // those rules
 };
 
 }  // namespace culprit

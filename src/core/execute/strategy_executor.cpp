@@ -142,8 +142,12 @@ void StrategyExecutor::answered(const Reply& reply, Time now) {
 
 void StrategyExecutor::advance(Time now, std::vector<Command>& commands) {
   if (!owed_.empty()) forget_what_others_started(now);
-  // An attempt that succeeded left its rule; nothing of it is left to do.
-  std::erase_if(runs_, [&](const Run& run) { return attempt_of(run) == nullptr; });
+  // An attempt that is over left its rule; nothing of it is left to do.
+  std::erase_if(runs_, [&](const Run& run) {
+    if (attempt_of(run) != nullptr) return false;
+    owe_restart(run, now);
+    return true;
+  });
   for (Run& run : runs_) advance(run, now, commands);
 }
 
@@ -520,6 +524,16 @@ bool StrategyExecutor::is_changed_by_another(const execute::Undo& undo) const {
   const ComponentState& state = knowledge_.components[undo.component];
   return lifecycle != nullptr && state.brought && state.brought->is_changed &&
          state.lifecycle != lifecycle->target;
+}
+
+// A restart that was interrupted may have left its component inactive. No person did that.
+void StrategyExecutor::owe_restart(const Run& run, Time now) {
+  const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
+  if (run.is_undoing || run.adaptation >= adaptations.size()) return;
+  const Adaptation& adaptation = adaptations[run.adaptation];
+  const bool has_changed = run.goal > 0 || (run.pursuit && run.pursuit->has_changed_anything());
+  if (adaptation.type == AdaptationType::kRestart && !run.goals.empty() && has_changed)
+    owe({adaptation.component, execute::LifecycleGoal{Lifecycle::kActive, {}}}, now);
 }
 
 // It stays deactivated: the next try gives it back, be it that of the next culprit.

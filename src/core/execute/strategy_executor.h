@@ -130,6 +130,7 @@ class StrategyExecutor {
   bool is_changed_by_another(const execute::Undo& undo) const;
   void tell_left_out(const Run& run, const std::string& why, Time now);
   void owe(const execute::Undo& undo, Time now);
+  void owe_restart(const Run& run, Time now);
   void finish_goal(Run& run, Time now);
   bool replace_hung_member(Run& run) const;
   void finish_undo(Run& run, Time now);

@@ -189,6 +189,10 @@ void Incidents::note(const Event& event, const RuleSet& rules) {
     if (rules[held->strategy].is_last_resort) return;
     // The failure is known to be its own cause all the same.
     Failure& failure = of(rules[held->strategy].rule, rules);
+    if (!held->candidates.empty()) {
+      failure.candidates = held->candidates;
+      failure.suspects = held->suspects;
+    }
     failure.held_back = held->reason;
     failure.is_paused = held->restraint == Restraint::kPaused;
     failure.blamed = held->strategy;

@@ -5,8 +5,7 @@
 //
 //   cleared  how often i cleared after a strategy had resolved j, without a repair of its own
 //   stayed   how often it was still there when its signals could have shown the recovery
-//   spared   for how many times kUsualDelay it was seen to be well while j was there (exposure); not
-//            kept in the journal
+//   spared   for how many times kUsualDelay it was seen to be well while j was there (exposure)
 //   kappa0   the expectation before any outcome: kUsual if i depends on j, kRare otherwise
 //   n0       how many outcomes that expectation weighs: kWeight
 //
@@ -55,7 +54,7 @@ class Couplings {
   };
   // All causes that `effect` was seen to clear with, or not.
   std::span<const Learned> of(RuleId effect) const { return by_effect_[effect.index]; }
-  // Nothing learned: both counts are zero.
+  // Nothing learned: all counts are zero.
   Coupling of(RuleId cause, RuleId effect) const;
 
  private:

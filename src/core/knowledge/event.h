@@ -278,8 +278,11 @@ enum class Restraint : std::uint8_t {
 struct ActionHeldBack {
   StrategyId strategy;
   Restraint restraint = Restraint::kPaused;
-  std::string reason;
+  std::string reason{};
   Time until = kNever;  // when the reason may end; kNever: unknown
+  // As StrategyChosen's, if everything has to wait; empty if only this strategy has to.
+  std::vector<Candidate> candidates{};
+  std::vector<Suspect> suspects{};
 };
 
 // The strategy waits for a person to approve or refuse it. The question lapses when the failure is

@@ -106,6 +106,7 @@ struct RuleState {
   Time worked_until = kLongAgo;   // when it was seen to be well last before that; kLongAgo: never
   Time recurring_since = kNever;  // if it cleared and is back: when it was detected first
   Time gone_since = kLongAgo;     // when it cleared last
+  bool was_repaired = false;      // a strategy of its own cleared it then
   Time quiet_until = kLongAgo;    // COOLDOWN
 
   Search search;

@@ -100,11 +100,20 @@ class SignalStore {
     // received all the time until now. May be a little ahead.
     Time resumed = kLongAgo;
     Time heard_again_by = kLongAgo;  // after that time: when a sample would have come at the latest
+    // The last pause that was longer than kSilentGaps of the usual gaps, as they were known once it was over.
+    // Empty once the next pause shows that the topic has only become slow.
+    struct Silence {
+      Time since{};
+      Time over{};
+      Duration gap{};  // that was usual before
+    };
+    std::optional<Silence> silence{};
 
     // Does it come all the time? A topic that is sent on demand pauses often or for long.
     bool is_steady() const { return gap > Duration::zero() && paused <= flowed / kFlowsForPause; }
     static constexpr int kFlowsForPause = 4;
     static constexpr int kUsualPause = 3;  // gaps
+    static constexpr int kSilentGaps = 2;  // longer: it is silent
 
     // Since when its silence counts. @pre last
     Time silent_since() const { return std::max(*last, resumed); }

@@ -159,10 +159,13 @@ class AdaptationReader {
   bool value(Scanner& s, syntax::Adaptation& adaptation) {
     const Token& next = s.peek();
     constexpr std::string_view kNoSign = "unexpected '=' between a parameter and its value";
-    if (next.text == "to" || next.text == "by")
+    if (next.text == "to" || next.text == "by") {
+      Scanner ahead = s.ahead();
+      ahead.next();
       return read_.fail(Code::kSyntax, next.span,
                         "unexpected '" + std::string(next.text) + "' before a value", "remove it",
-                        Edit{{next.span.begin, next.span.end + 1}, ""});
+                        Edit{{next.span.begin, ahead.peek().span.begin}, ""});
+    }
     if (source_.text(next.span) == "[")
       return read_.fail(Code::kSyntax, next.span, "a list stands in quotes",
                         "write it as in set_parameter gains \"[1, 2]\" 5");

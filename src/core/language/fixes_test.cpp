@@ -91,6 +91,19 @@ TEST(Fixes, AreNotOfferedWhereMoreThanOneIsLikely) {
   EXPECT_EQ(fixed(rule_file("age(image) > 1s")), "") << "in which namespace?";
 }
 
+TEST(Fixes, StayInTheirLineAtTheEndOfAFile) {
+  const std::string text =
+      "COMPONENT c\nRULE r\n  POLICIES ERROR\n  TRIGGER age(/t) > 1s\n    STRATEGY s 50 10\n"
+      "      ADAPTATION c set_parameter p to";
+  int fixes = 0;
+  for (const Diagnostic& d : check(Source("t.rules", text)).diagnostics) {
+    if (!d.fix) continue;
+    ++fixes;
+    EXPECT_LE(d.fix->span.end, text.size());
+  }
+  EXPECT_GT(fixes, 0);
+}
+
 // Over everything that people wrote wrong.
 TEST(Fixes, RemoveWhatTheyAreOfferedFor) {
   int applied = 0;

@@ -181,6 +181,7 @@ class Producers {
   std::size_t begin(std::size_t component) const { return ends_[component]; }
   std::size_t end(std::size_t component) const { return ends_[component + 1]; }
   std::size_t operator[](std::size_t place) const { return all_[place]; }
+  std::size_t components() const { return ends_.size() - 1; }
 
  private:
   std::vector<std::size_t> ends_;  // of what is in front of each component, and of the last one
@@ -238,14 +239,16 @@ std::set<std::size_t> subjects_of(const Rule& rule, const RuleSet& rules) {
 std::optional<std::size_t> producer_among(const std::set<std::size_t>& subjects,
                                           std::size_t component, const Producers& producers) {
   if (subjects.contains(component)) return std::nullopt;
-  std::set<std::size_t> seen{component};
+  std::vector<bool> seen(producers.components());
   std::vector<std::size_t> open{component};
   while (!open.empty()) {
     const std::size_t here = open.back();
     open.pop_back();
     if (subjects.contains(here)) return here;
     for (std::size_t place = producers.begin(here); place < producers.end(here); ++place) {
-      if (seen.insert(producers[place]).second) open.push_back(producers[place]);
+      if (seen[producers[place]]) continue;
+      seen[producers[place]] = true;
+      open.push_back(producers[place]);
     }
   }
   return std::nullopt;

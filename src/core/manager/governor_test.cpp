@@ -203,6 +203,25 @@ TEST(Storm, WhenMostIsIllAtOnceNothingIsDoneUntilItIsOver) {
   for (const char* c : {"b", "c", "d"}) EXPECT_TRUE(robot.works(c)) << c << transcript(robot);
 }
 
+// The first have been repaired before the last one fails.
+TEST(Storm, FailuresThatBeginOneAfterTheOtherAreOne) {
+  for (const Duration apart : {400ms, 3000ms}) {
+    TestRobot robot = five(false);
+    for (const char* c : {"a", "b", "c", "d"}) {
+      robot[c].fault = "redeploy";
+      robot.run_for(apart);
+    }
+    const bool is_storm = apart < 1s;
+    EXPECT_EQ(robot.count("a person must look: 4 of 5 components failed at once"),
+              is_storm ? 1u : 0u)
+        << transcript(robot);
+    EXPECT_EQ(robot.was_asked("d: "), !is_storm) << transcript(robot);
+    robot.run_for(20s);
+    for (const char* c : {"a", "b", "c", "d"})
+      EXPECT_TRUE(robot.works(c)) << c << transcript(robot);
+  }
+}
+
 TEST(Storm, AnotherComputerThatDoesNotAnswerIsNotFiveDeadNodes) {
   TestRobot robot = five(true);
   for (std::size_t c = 0; c < 5; ++c) {

@@ -122,6 +122,7 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
     react(commands);
   } else {
     executor_.advance(now_, commands);  // lets go of what has just succeeded
+    troubles_.look(now_, false);
     next_plan_ = analyzer_.next_start();
   }
   if (hears_) analyzer_.look_for_blind(now_);
@@ -347,7 +348,10 @@ void Manager::plan(Time now, std::vector<Command>& commands) {
     ask(decision, now, commands);
     if (decision.chosen) {
       // A strategy of this plan may have spent the last budget of its kind.
-      const bool has_to_wait = governor_.holds_back(*decision.chosen, now) ||
+      const bool has_to_wait = governor_.holds_back({.strategy = *decision.chosen,
+                                                     .candidates = decision.candidates,
+                                                     .suspects = decision.suspects},
+                                                    now) ||
                                governor_.withholds(*decision.chosen, now) ||
                                is_beside_last_resort(*decision.chosen);
       if (!has_to_wait) carry_out(decision, now);

@@ -67,6 +67,39 @@ TEST(Orders, PauseStopsAtOnceWhatIsUnderWayAndResumeGoesOn) {
   EXPECT_TRUE(r.works("camera")) << transcript(r);
 }
 
+// The diagnosis does not stop with the pause.
+TEST(Orders, APauseHidesNoEvidence) {
+  TestRobot r = robot();
+  r.order(order(Pause{}));
+  r["camera"].fault = "restart";
+  r.run_for(5s);
+  const auto held = std::ranges::find_if(r.events, [](const Event& event) {
+    return std::holds_alternative<ActionHeldBack>(event.what);
+  });
+  ASSERT_NE(held, r.events.end()) << transcript(r);
+  const auto& told = std::get<ActionHeldBack>(held->what);
+  EXPECT_EQ(told.restraint, Restraint::kPaused);
+  EXPECT_FALSE(told.candidates.empty());
+  ASSERT_FALSE(told.suspects.empty());
+  EXPECT_EQ(told.suspects[0].component, r.id("camera"));
+  EXPECT_FALSE(told.suspects[0].evidence.empty());
+}
+
+// The restart has deactivated the camera, and the pause keeps it from being activated again. The next culprit knows
+// that no person deactivated it.
+TEST(Orders, WhatAPausedRestartLeftInactiveIsOwedByTheNextCulprit) {
+  TestRobot r = robot();
+  begin_restart(r);
+  r.order(order(Pause{}));
+  r.run_for(2s);
+  ASSERT_EQ(r["camera"].state, Lifecycle::kInactive) << transcript(r);
+  Manager::Options options;
+  options.start = r.now;
+  auto next = std::make_unique<Manager>(r.rules(), std::make_unique<BayesPlanner>(), options);
+  next->remember(r.events);
+  EXPECT_TRUE(next->knowledge().components[kCamera].is_to_be_given_back()) << transcript(r);
+}
+
 TEST(Orders, NothingIsLearnedFromAStrategyThatWasAbandoned) {
   TestRobot r = robot();
   const Belief before = r.manager().knowledge().beliefs[kRestart];

@@ -43,6 +43,16 @@ TEST(LossMeter, KnowsNothingWhereNothingComes) {
   EXPECT_FALSE(meter.share(Time(20s)));
 }
 
+TEST(LossMeter, DoesNotKnowTheRobotsLossWhileWeDroppedSomeOfIt) {
+  LossMeter meter;
+  for (int i = 1; i <= 40; ++i) meter.add(Time(i * 100ms), i % 4 == 0 ? 2 : 1, i == 20);
+  EXPECT_FALSE(meter.share(Time(4s)));
+  EXPECT_DOUBLE_EQ(*meter.share_with_ours(Time(4s)), 0.2);
+  EXPECT_GT(meter.at_most(Time(4s)), 0.2) << "a silence may be that, whoever lost it";
+  for (int i = 41; i <= 160; ++i) meter.add(Time(i * 100ms), 1);
+  EXPECT_DOUBLE_EQ(*meter.share(Time(16s)), 0.0);
+}
+
 TEST(LossMeter, ForgetsWhatCameBeforeARestart) {
   LossMeter meter;
   for (int i = 1; i <= 40; ++i) meter.add(Time(i * 100ms), 2);

@@ -205,7 +205,9 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
     state.changes_until = later(at, is_measured || is_ours ? longest : kUnknownTransition);
   }
   if (is_primary) write_.discovered.read_lifecycle(seen.component);
-  if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
+  const bool is_owed = state.is_to_be_given_back() && seen.state == state.brought->to;
+  if (is_primary && !is_owed && !state.took_place &&
+      knowledge_.states.reservation(seen.component) == nullptr)
     write_.components.intend_lifecycle(seen.component, seen.state, at, write_.events);
   if (seen.state != Lifecycle::kUnknown) state.took_place = false;
   if (seen.is_shut_down && knowledge_.states.reservation(seen.component) == nullptr)
@@ -323,6 +325,7 @@ void Monitor::on(Time at, const Probed& seen) {
   if (is_deaf_ && !seen.answered) return;
   if (seen.node > 0) return note_part_probed(seen, at);
   ComponentState& state = write_.components[seen.component];
+  if (state.missed_probes == 0) state.missed_since = at;
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
   state.answers_probes |= seen.answered;
   if (seen.answered) {
@@ -522,6 +525,7 @@ void Monitor::note_silent(const std::string& host, Time at) {
     }
     silent.components.push_back(component);
     // More than a few questions without an answer.
+    if (state.missed_probes == 0) write_.components[component].missed_since = at;
     write_.components[component].missed_probes = std::max(state.missed_probes, kMissedProbes);
     if (!state.host_silent) write_.components.set_host_silent(component, at);
     deadlines_.clear(return_of(component));

@@ -182,6 +182,17 @@ TEST(Monitor, CountsWhatWasLostOnTheWay) {
   EXPECT_NEAR(watched.knowledge.signals[InputId(0)].d, 10, 2.1);
 }
 
+TEST(Monitor, DoesNotCallALossWhatOurOwnSocketsDropped) {
+  Watched watched(rule("loss(/t) > 0.1"));
+  const auto& loss = watched.knowledge.signals[InputId(0)];
+  for (int i = 0; i < 20; ++i) watched.observe(100ms * i, SampleArrived{TopicId(0), 2});
+  EXPECT_TRUE(loss.known);
+  watched.observe(2s, SampleArrived{TopicId(0), 2, true});
+  EXPECT_FALSE(loss.known);
+  for (int i = 21; i < 200; ++i) watched.observe(100ms * i, SampleArrived{TopicId(0), 2});
+  EXPECT_TRUE(loss.known);
+}
+
 TEST(Monitor, KnowsHowLongATopicThatComesInBurstsIsSilent) {
   Watched watched(rule("age(/t) > 1s"));
   const auto rhythm = [&] { return watched.knowledge.signals.rhythm(TopicId(0)); };
@@ -562,6 +573,42 @@ void work_until(Watched& watched, Duration end) {
   watched.observe(1s, EndpointAppeared{"/c", EndpointKind::kPublisher, "/t"});
   for (Duration at = 1s; at < end; at += 100ms) watched.observe(at, SampleArrived{TopicId(0), 1});
   watched.observe(end, Probed{ComponentId(0), true});
+}
+
+// The topic came every 100 ms before these pauses.
+std::optional<SignalStore::Rhythm::Silence> silence_after(std::initializer_list<Duration> pauses) {
+  Watched watched(rule(kHeard));
+  work_until(watched, 5s);
+  Duration at = 4900ms;
+  for (const Duration pause : pauses) watched.observe(at += pause, SampleArrived{TopicId(0), 1});
+  return watched.knowledge.signals.rhythm(TopicId(0)).silence;
+}
+
+TEST(Monitor, ASilenceIsOverWithAMessage) {
+  const auto silence = silence_after({3s});
+  ASSERT_TRUE(silence);
+  EXPECT_EQ(silence->over - silence->since, 3s);
+  EXPECT_TRUE(silence_after({3s, 100ms, 100ms, 100ms}));
+  EXPECT_TRUE(silence_after({3s, 250ms, 100ms})) << "it comes irregularly at first";
+  EXPECT_FALSE(silence_after({240ms, 100ms})) << "one message is late";
+}
+
+// The first of its slow gaps is as long as the others.
+TEST(Monitor, ATopicThatBecomesSlowWasNotSilent) {
+  for (const Duration gap : {240ms, 340ms, 500ms, 1000ms, 3000ms})
+    EXPECT_FALSE(silence_after({gap, gap, gap, gap, gap, gap, gap, gap})) << gap.count();
+}
+
+TEST(Monitor, NotesSinceWhenAnswersAreMissing) {
+  Watched watched(rule(kHeard));
+  work_until(watched, 5s);
+  const ComponentState& state = watched.knowledge.components[ComponentId(0)];
+  const Time begin = state.answered;
+  watched.observe(6s, Probed{ComponentId(0), false});
+  watched.observe(7s, Probed{ComponentId(0), true});
+  watched.observe(8s, Probed{ComponentId(0), false});
+  watched.observe(9s, Probed{ComponentId(0), false});
+  EXPECT_EQ(state.missed_since - begin, 3s);
 }
 
 TEST(Monitor, ALocalNodeHangsThatNeitherAnswersNorPublishes) {

@@ -11,10 +11,22 @@ namespace {
 
 using Kind = Input::Kind;
 
+// A message comes after `interval`. The first of several slow ones ends no silence: they are all as late.
+void note_silence(SignalStore::Rhythm& rhythm, Duration interval, Time at) {
+  constexpr int kGaps = SignalStore::Rhythm::kSilentGaps;
+  auto& silence = rhythm.silence;
+  const bool is_next = silence && silence->over == *rhythm.last;
+  if (is_next && interval > kGaps * silence->gap && 2 * interval >= silence->over - silence->since)
+    silence.reset();
+  const Duration before = rhythm.gap;
+  rhythm.gap = monitor::usual_gap(before, interval);
+  if (before > Duration::zero() && interval > kGaps * rhythm.gap)
+    silence = {*rhythm.last, at, before};
+}
+
 }  // namespace
 
 using monitor::smoothed;
-using monitor::usual_gap;
 using monitor::usual_latency;
 
 void Monitor::on(Time at, const SampleArrived& seen) {
@@ -30,11 +42,11 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
     note_pause(rhythm, interval, seen.topic);
     rhythm.interval = smoothed(rhythm.interval, interval);
-    rhythm.gap = usual_gap(rhythm.gap, interval);
+    note_silence(rhythm, interval, at);
   }
   rhythm.last = topic.last = at;
-  topic.loss.add(at, seen.published);
-  rhythm.loss = topic.loss.share(at).value_or(0);
+  topic.loss.add(at, seen.published, seen.lost_here);
+  rhythm.loss = topic.loss.share_with_ours(at).value_or(0);
   rhythm.loss_at_most = topic.loss.at_most(at);
   write_.signals.set_rhythm(seen.topic, rhythm);
   if (topic.needs_phi) topic.phi.add(at, seen.published);

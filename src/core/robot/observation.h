@@ -56,10 +56,11 @@ struct EndpointVanished {
 
 // A message came on a watched topic. `published` is how many its publisher sent since the last one
 // that reached us, this one included: more than 1 if some were lost on the way (by RTPS sequence
-// numbers).
+// numbers). `lost_here`: culprit's own full sockets dropped datagrams meanwhile, which may be those.
 struct SampleArrived {
   TopicId topic;
   std::uint32_t published = 1;
+  bool lost_here = false;
 };
 
 // A declared or looked-up signal was read.

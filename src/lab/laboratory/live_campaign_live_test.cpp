@@ -42,8 +42,11 @@ class LiveCampaign : public testing::Test {
   }
   template <class Done>
   static bool eventually(Done done) {
-    for (int i = 0; i < 1200 && !done(); ++i) std::this_thread::sleep_for(50ms);
-    return done();
+    for (int i = 0; i < 1200; ++i) {
+      if (done()) return true;  // it may be over a moment later
+      std::this_thread::sleep_for(50ms);
+    }
+    return false;
   }
 
   const TestWorld world_;

@@ -269,7 +269,9 @@ void Invariants::check_replacement(const Manager& manager, const Strategy& strat
         return std::find(upstream.begin(), upstream.end(), producer) != upstream.end();
       };
       if (!needs(component, cause) || needs(cause, component)) continue;
-      const char* why = dead_since_[needed] <= failed ? " is dead"
+      const bool is_explained =
+          dead_since_[needed] <= failed && !fell_silent_before(manager, part, dead_since_[needed]);
+      const char* why = is_explained ? " is dead"
                         : is_given_up(manager, cause, failed, truth.is_faulty[part])
                             ? " is silent and exhausted"
                             : nullptr;
@@ -277,6 +279,17 @@ void Invariants::check_replacement(const Manager& manager, const Strategy& strat
         fail(at, name + " is begun though " + rules_[cause].name + why + ", which explains it");
     }
   }
+}
+
+// The last message came so long before that time that the next one was missing by then: it has a cause of its own.
+bool Invariants::fell_silent_before(const Manager& manager, std::size_t part, Time at) const {
+  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
+    if (rules_.topics[t].name != "/" + rules_.components[part].name) continue;
+    const auto& rhythm = manager.knowledge().signals.rhythm(TopicId(t));
+    if (rhythm.last && rhythm.gap > Duration::zero())
+      return rhythm.silent_since() + 3 * rhythm.gap < at;
+  }
+  return false;
 }
 
 // Its silence began before `failed`, and nothing helped against it. An effect with a fault of its own
@@ -327,8 +340,10 @@ void Invariants::check_the_dead(const Manager& manager, Time now) {
     // A strategy that can only set a parameter must wait until the dead component is back.
     const bool can_replace = std::any_of(strategies.begin(), strategies.end(),
                                          [&](StrategyId s) { return replaces(rules_[s]); });
+    // It was reported that it stays down.
+    const bool is_let_be = knowledge.departures.stays_down(component);
     const bool is_left = can_replace && is_dead(knowledge.components[component]) && !is_held &&
-                         knowledge.states.reservation(component) == nullptr &&
+                         !is_let_be && knowledge.states.reservation(component) == nullptr &&
                          std::none_of(strategies.begin(), strategies.end(),
                                       [&](StrategyId s) { return is_excused(manager, s); });
     if (!is_left) continue;

@@ -88,6 +88,7 @@ class Invariants {
   void check_last_resorts(const Manager& manager, Time now);
   void check_the_dead(const Manager& manager, Time now);
   void check_sight(const Manager& manager, Time now);
+  bool fell_silent_before(const Manager& manager, std::size_t part, Time at) const;
   bool is_given_up(const Manager& manager, ComponentId component, Time failed,
                    bool is_effect_faulty) const;
   bool is_excused(const Manager& manager, StrategyId strategy) const;

@@ -17,7 +17,8 @@ TEST(Torture, HundredsOfRobotsAreTreatedAsPromised) {
 }
 
 TEST(Torture, WhatWasOnceFoundStaysMended) {
-  for (const std::uint64_t seed : {485u, 1293u, 1982u, 4047u, 4284u, 5524u, 13213u, 18280u, 28748u})
+  for (const std::uint64_t seed :
+       {485u, 1293u, 1982u, 4047u, 4284u, 5524u, 13213u, 18280u, 28748u, 62054u})
     EXPECT_FALSE(run(draw(seed)).violation) << report(shrink(draw(seed)));
 }
 

@@ -283,8 +283,9 @@ void TorturedRobot::end_launch(Duration pause) {
       const bool is_there = launcher_of_[part] == launcher && machine.is_in_graph() &&
                             machine.process() == ProcessState::kRunning;
       if (launcher_of_[part] != launcher) return;
+      // One that is killed meanwhile is in the graph for a while longer: that is a crash.
       machine.terminate([this, part, is_there] {
-        if (is_there) left_[part] = world_.now();
+        if (is_there && !machines_[part]->is_in_graph()) left_[part] = world_.now();
       });
     });
   }

@@ -4,6 +4,7 @@
 
 #include "base/live_clock.h"
 #include "ros2/messages.h"
+#include "ros2/sample_gaps.h"
 
 namespace culprit::doctor {
 namespace {
@@ -32,7 +33,7 @@ class Listening::Ear {
   static std::unique_ptr<Ear> open(ros2::NodeEntry& self, const WantedTopic& topic,
                                    const std::function<std::optional<Duration>()>& simulated_now,
                                    Time now) {
-    std::unique_ptr<Ear> ear(new Ear(topic, simulated_now, now));
+    std::unique_ptr<Ear> ear(new Ear(self, topic, simulated_now, now));
     // Only a reliable reader is sent what was published before (DDS 1.4 §2.2.3.4).
     const ros2::Qos qos =
         topic.is_latched
@@ -71,7 +72,7 @@ class Listening::Ear {
     opened_ = now;
     messages_ = 0;
     lost_ = 0;
-    sequences_.clear();
+    gaps_ = {};
     pauses_.clear();
     lags_.clear();
     simulated_lags_.clear();
@@ -101,9 +102,9 @@ class Listening::Ear {
   }
 
  private:
-  Ear(const WantedTopic& topic, const std::function<std::optional<Duration>()>& simulated_now,
-      Time now)
-      : is_stamped_(topic.is_stamped), simulated_now_(simulated_now), opened_(now) {}
+  Ear(ros2::NodeEntry& self, const WantedTopic& topic,
+      const std::function<std::optional<Duration>()>& simulated_now, Time now)
+      : self_(self), is_stamped_(topic.is_stamped), simulated_now_(simulated_now), opened_(now) {}
 
   void on_sample(const ros2::Sample& sample) {
     const Time now = live_now();
@@ -115,19 +116,12 @@ class Listening::Ear {
       pauses_.push_back(now - last_);
     }
     ++messages_;
-    note_sequence(sample.identity);
+    const auto step = gaps_.next(sample.identity.writer, sample.identity.sequence,
+                                 self_.context().participant().dropped_here());
+    if (!step.lost_here) lost_ += step.published - 1;
     data_ += sample.size;
     last_ = now;
     if (is_stamped_) read_header(sample);
-  }
-
-  void note_sequence(const ros2::SampleIdentity& identity) CULPRIT_REQUIRES(mutex_) {
-    constexpr std::int64_t kMostLost = 1000;  // more is a restart or a lie
-    if (sequences_.size() >= kMostWriters && !sequences_.contains(identity.writer)) return;
-    const auto [last, is_first] = sequences_.try_emplace(identity.writer, identity.sequence);
-    const std::int64_t gap = identity.sequence - last->second;
-    if (!is_first && gap > 1 && gap <= kMostLost) lost_ += static_cast<std::size_t>(gap - 1);
-    last->second = identity.sequence;
   }
 
   void read_header(const ros2::Sample& sample) CULPRIT_REQUIRES(mutex_) {
@@ -159,6 +153,7 @@ class Listening::Ear {
     last->second = stamp;
   }
 
+  ros2::NodeEntry& self_;
   const bool is_stamped_;
   const std::function<std::optional<Duration>()> simulated_now_;
   mutable Mutex mutex_;
@@ -166,8 +161,7 @@ class Listening::Ear {
   std::optional<Time> closed_;  // of the executor's thread
   std::size_t messages_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::size_t lost_ CULPRIT_GUARDED_BY(mutex_) = 0;
-  std::map<ros2::Guid, std::int64_t> sequences_
-      CULPRIT_GUARDED_BY(mutex_);                    // of each writer the last
+  ros2::SampleGaps gaps_ CULPRIT_GUARDED_BY(mutex_);
   std::size_t data_ CULPRIT_GUARDED_BY(mutex_) = 0;  // bytes
   Time first_ CULPRIT_GUARDED_BY(mutex_){};
   Time last_ CULPRIT_GUARDED_BY(mutex_){};

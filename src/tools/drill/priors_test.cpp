@@ -25,10 +25,10 @@ struct DrillPriors : testing::Test {
 };
 
 TEST_F(DrillPriors, AreAddedToWhatTheRobotLearnedButSuccessRatesAreNot) {
-  write(robot, {{}, {{"CameraDead", "FusionDead", {2, 1}}}, {}});
+  write(robot, {{}, {{"CameraDead", "FusionDead", {2, 1, 0.5}}}, {}});
   write(drilled,
         {{{"CameraDead", "redeploy", {3, 1}, {1, 1}}},
-         {{"CameraDead", "FusionDead", {5, 0}}, {"drill_abort_1", "FusionDead", {1, 0}}},
+         {{"CameraDead", "FusionDead", {5, 0, 2}}, {"drill_abort_1", "FusionDead", {1, 0}}},
          {{"FusionDead", 4, 0.1, 0.3},
           journal::named("FusionDead", Transients::Seen{3, 1, std::chrono::seconds(5)})[0]}});
   const auto added = add_priors(drilled, robot, 2);
@@ -37,7 +37,7 @@ TEST_F(DrillPriors, AreAddedToWhatTheRobotLearnedButSuccessRatesAreNot) {
   EXPECT_EQ(added->latencies, 1u);
   const journal::Learned now = learned_in(robot);
   ASSERT_EQ(now.couplings.size(), 1u);
-  EXPECT_EQ(now.couplings[0].coupling, (Coupling{7, 1}));
+  EXPECT_EQ(now.couplings[0].coupling, (Coupling{7, 1, 2.5}));
   ASSERT_EQ(now.latencies.size(), 1u);
   EXPECT_EQ(now.latencies[0].rule, "FusionDead");
   EXPECT_TRUE(now.beliefs.empty());

@@ -277,5 +277,55 @@ RULE Blurred
   EXPECT_FALSE(repeated.difference) << "it begins with what the first process had learned";
 }
 
+// The picture is bad for some time, and the fusion that reads it works all the while.
+TEST(Crash, ThatAFailureDidNotFollowAnotherIsKnownToTheNextProcess) {
+  const TestFolder folder;
+  const char* rules = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+RULE Blurred
+  POLICIES ERROR
+  TRIGGER blur > 0.5
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 2
+RULE Lost
+  POLICIES ERROR
+  TRIGGER drift > 0.5
+    STRATEGY redeploy_fusion 90 10
+      ADAPTATION fusion redeploy 2
+)";
+  TestRobot robot(rules);
+  robot.add("camera", {}, "/rgb");
+  robot.add("fusion", {"camera"}, "/fused");
+  const auto measure = [&](double blur, Duration time) {
+    for (const Time end = robot.now + time; robot.now < end; robot.run_for(100ms)) {
+      robot.signal("blur", Value(blur));
+      robot.signal("drift", Value(0.0));
+    }
+  };
+  const auto learned = [&] {
+    return robot.manager().knowledge().couplings.of(RuleId(0), RuleId(1));
+  };
+  Life first(folder / "first.journal", robot, rules);
+  robot.discover();
+  measure(0, 6s);
+  measure(1, 20s);
+  measure(0, 5s);
+  const Coupling known = learned();
+  EXPECT_GT(known.spared, 1) << transcript(robot);
+  first.die_after(0, true);
+  measure(1, 5s);
+  ASSERT_TRUE(first.is_dead());
+  {
+    const Life second(first.remains(), robot, rules);
+    EXPECT_EQ(learned(), known);
+    measure(1, 5s);
+  }
+  const journal::Reader reader = value_of(journal::Reader::open(first.remains()));
+  Recording recording = value_of(Recording::open(reader));
+  const auto repeated = value_of(repeat(recording, reader, std::make_unique<BayesPlanner>(), {}));
+  EXPECT_FALSE(repeated.difference) << "it begins with what the first process had learned";
+}
+
 }  // namespace
 }  // namespace culprit::replay

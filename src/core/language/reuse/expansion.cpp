@@ -16,8 +16,10 @@ namespace {
 
 // Far above what people write; they bound what a hostile file can cost.
 constexpr std::size_t kMaxFiles = 256;
-constexpr std::size_t kMaxDepth = 16;                        // of templates that use templates
-constexpr std::size_t kMaxExpanded = std::size_t{16} << 20;  // bytes, of what templates become
+constexpr std::size_t kMaxDepth = 16;                       // of templates that use templates
+constexpr std::size_t kMaxUses = 10'000;                    // nested ones included
+constexpr std::size_t kMaxRules = 10'000;                   // from templates
+constexpr std::size_t kMaxExpanded = std::size_t{4} << 20;  // bytes, likewise
 constexpr std::size_t kEnoughMistakes = 200;
 constexpr const char* kTooLarge = "all files together are larger than 64 MiB";
 
@@ -261,7 +263,7 @@ class Expander {
 
   ComposedText instance(const Surroundings& unit, const syntax::Use& use,
                         std::vector<const syntax::Template*> open) {
-    if (mistakes_.size() >= kEnoughMistakes) return {};
+    if (mistakes_.size() >= kEnoughMistakes || is_too_much_) return {};
     const Known* known = used_template(unit, use, open);
     if (known == nullptr) return {};
     const syntax::Template& pattern = *known->pattern;
@@ -272,24 +274,24 @@ class Expander {
       return {};
     }
 
+    ++uses_;
     const Piece& piece = piece_of(unit.text, use.span.begin);
     steps_.push_back({Step::Kind::kUse,
                       origin_of(use.span, unit.text.pieces, steps_, unit.text.size()).place,
                       piece.step});
     const File& file = files_[known->file];
     const auto step = static_cast<std::uint32_t>(steps_.size() - 1);
-    Unit body(filled_in(pattern, known->file, file.source, file.lexemes, *arguments, step));
-    expanded_ += body.text.text.size() + 1;
-    if (expanded_ > kMaxExpanded) {
-      refuse_use(unit, Code::kEndlessTemplate, use.pattern.span,
-                 "the expanded templates are larger than 16 MiB", "");
-      return {};
-    }
+    ComposedText filled = filled_in(pattern, known->file, file.source, file.lexemes, *arguments,
+                                    step, kMaxExpanded - expanded_);
+    if (!fits(unit, use, filled.text.size())) return {};
+    Unit body(std::move(filled));
     if (!body.said.empty()) {
       blame(body.text, of_arguments(body));
       return {};
     }
-    change(body, names_.own_constants(body.tree));
+    rules_ += body.tree.rules.size();
+    if (!fits(unit, use, 0)) return {};
+    change(unit, use, body, names_.own_constants(body.tree));
     if (!body.tree.uses.empty()) {
       open.push_back(&pattern);
       names_.enter(body.tree);
@@ -298,12 +300,29 @@ class Expander {
       body = Unit(std::move(text));
       open.pop_back();
     }
-    if (use.in) change(body, names_.below(use.in->text, body.tree, body.source));
+    if (use.in) change(unit, use, body, names_.below(use.in->text, body.tree, body.source));
     if (open.empty()) {
-      change(body, names_.giving_way(body.tree, body.source));
+      change(unit, use, body, names_.giving_way(body.tree, body.source));
       names_.add(body.tree);
     }
     return std::move(body.text);
+  }
+
+  // Counts what `use` adds. False, and said once, if it is too much.
+  bool fits(const Surroundings& unit, const syntax::Use& use, std::size_t bytes) {
+    const auto refuse = [&](const std::string& what) {
+      is_too_much_ = true;
+      refuse_use(unit, Code::kEndlessTemplate, use.pattern.span,
+                 "with this USE, templates expand to more than " + what,
+                 "use fewer templates, or write fewer USEs into them");
+      return false;
+    };
+    if (is_too_much_) return false;
+    expanded_ += bytes;
+    if (uses_ > kMaxUses) return refuse(std::to_string(kMaxUses) + " USEs");
+    if (rules_ > kMaxRules) return refuse(std::to_string(kMaxRules) + " rules");
+    if (expanded_ > kMaxExpanded) return refuse("4 MiB of text");
+    return true;
   }
 
   // The template's lines are right by themselves: one mistake for each argument that does not fit.
@@ -318,8 +337,12 @@ class Expander {
     return kept;
   }
 
-  static void change(Unit& unit, std::vector<Replacement> by) {
-    if (!by.empty()) unit = Unit(replaced(unit.text, std::move(by)));
+  // `body` is what `use`, which stands in `unit`, becomes.
+  void change(const Surroundings& unit, const syntax::Use& use, Unit& body,
+              std::vector<Replacement> by) {
+    std::size_t bytes = 0;
+    for (const Replacement& each : by) bytes += each.text.size();
+    if (!by.empty() && fits(unit, use, bytes)) body = Unit(replaced(body.text, std::move(by)));
   }
 
   // ---- Mistakes
@@ -357,7 +380,10 @@ class Expander {
   std::vector<Step> steps_;
   DeclaredNames names_;
   std::size_t size_ = 0;              // of the files that are included
-  std::size_t expanded_ = 0;          // of what templates became
+  std::size_t expanded_ = 0;          // bytes of what templates became
+  std::size_t uses_ = 0;              // of templates
+  std::size_t rules_ = 0;             // of what they became
+  bool is_too_much_ = false;          // and was said
   std::vector<Diagnostic> mistakes_;  // their spans are of wreck_
   ComposedText wreck_;                // what has mistakes, one behind the other
 };

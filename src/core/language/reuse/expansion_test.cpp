@@ -1,5 +1,6 @@
 #include "language/reuse/expansion.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -10,6 +11,8 @@
 
 namespace culprit {
 namespace {
+
+using testing::HasSubstr;
 
 using Files = std::map<std::string, std::string>;
 
@@ -256,6 +259,41 @@ TEST(Expansion, EndsWhateverTemplatesDo) {
   ASSERT_FALSE(deep.mistakes.empty());
   EXPECT_EQ(deep.mistakes[0].code, Code::kEndlessTemplate);
   EXPECT_LE(deep.mistakes.size(), 200u);
+}
+
+// Said once, where it becomes too much, however much comes after it.
+TEST(Expansion, EndsWhereItBecomesTooMuch) {
+  const auto said = [](const std::string& text) {
+    const Expansion rules = expanded(text);
+    return messages(rules, rules.mistakes);
+  };
+  std::string wide = "TEMPLATE t0\n  CONST c = 1\nEND\n";
+  for (int i = 1; i < 8; ++i) {
+    wide += "TEMPLATE t" + std::to_string(i) + "\n";
+    for (int n = 0; n < 10; ++n) wide += "  USE t" + std::to_string(i - 1) + "\n";
+    wide += "END\n";
+  }
+  EXPECT_THAT(said(wide + "USE t7\nUSE t7\n"), HasSubstr("to more than 10000 USEs"));
+  EXPECT_EQ(expanded(wide + "USE t7\nUSE t7\n").mistakes.size(), 1u);
+
+  std::string rules = "TEMPLATE many(name)\n";
+  for (int i = 0; i < 101; ++i)
+    rules += "  RULE {name}_" + std::to_string(i) + "\n    POLICIES ERROR\n    TRIGGER true\n";
+  rules += "END\n";
+  for (int i = 0; i < 100; ++i) rules += "USE many(n" + std::to_string(i) + ")\n";
+  EXPECT_THAT(said(rules), HasSubstr("to more than 10000 rules"));
+
+  std::string holes;
+  for (int i = 0; i < 1000; ++i) holes += "{a}";
+  const std::string texts = "TEMPLATE large(a)\n  COMPONENT c LAUNCH \"" + holes + "\"\nEND\n";
+  EXPECT_THAT(said(texts + "USE large(\"" + std::string(100'000, 'x') + "\")\n"),
+              HasSubstr("to more than 4 MiB of text"));
+
+  std::string names = "TEMPLATE names\n";
+  for (int i = 0; i < 10'000; ++i)
+    names += "  SIGNAL s" + std::to_string(i) + " TOPIC /t FIELD data\n";
+  names += "END\nUSE names IN /" + std::string(250, 'n') + "\n";
+  EXPECT_THAT(said(names), HasSubstr("to more than 4 MiB of text"));
 }
 
 // The expanded text has no statements of reuse left, and every byte of it has an origin.

@@ -71,7 +71,8 @@ std::string usage_of(const syntax::Template& pattern) {
 
 ComposedText filled_in(const syntax::Template& pattern, std::uint32_t file, const Source& source,
                        const std::vector<Lexeme>& lexemes,
-                       const std::vector<TemplateArgument>& arguments, std::uint32_t step) {
+                       const std::vector<TemplateArgument>& arguments, std::uint32_t step,
+                       std::size_t most) {
   ComposedText out;
   const std::string_view text = source.text();
   std::uint32_t done = pattern.lines.begin;
@@ -90,6 +91,7 @@ ComposedText filled_in(const syntax::Template& pattern, std::uint32_t file, cons
           pattern.parameters.begin(), pattern.parameters.end(),
           [&](const auto& each) { return each.name.text == text.substr(at + 1, length - 2); });
       if (parameter == pattern.parameters.end()) continue;  // of a quoted text
+      if (out.text.size() > most) return out;
       const TemplateArgument& argument =
           arguments[static_cast<std::size_t>(parameter - pattern.parameters.begin())];
       copy_up_to(at);
@@ -130,7 +132,8 @@ std::vector<Replacement> DeclaredNames::own_constants(const syntax::File& tree) 
   std::map<std::string, std::string> renamed;
   for (const syntax::Constant& c : tree.constants) {
     std::string name = c.name.text;
-    for (int n = 2; !taken_.insert(name).second; ++n) name = c.name.text + "_" + std::to_string(n);
+    int& tried = tried_.try_emplace(c.name.text, 1).first->second;
+    while (!taken_.insert(name).second) name = c.name.text + "_" + std::to_string(++tried);
     if (name != c.name.text) renamed.try_emplace(c.name.text, name);
   }
   std::vector<Replacement> out;
@@ -226,22 +229,35 @@ std::vector<Replacement> DeclaredNames::below(const std::string& space, const sy
   return out;
 }
 
+namespace {
+
+// Null: neither has it.
+const std::string* known_in(const std::map<std::string, std::string>& first,
+                            const std::map<std::string, std::string>& second,
+                            const std::string& key) {
+  for (const auto* each : {&first, &second}) {
+    if (const auto found = each->find(key); found != each->end()) return &found->second;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 std::vector<Replacement> DeclaredNames::giving_way(const syntax::File& tree,
                                                    const Source& source) const {
-  std::map<std::string, std::string> names = components_;
-  std::map<std::string, std::string> nodes = by_node_;
+  std::map<std::string, std::string> names;  // of this tree, beside components_
+  std::map<std::string, std::string> nodes;  // likewise, beside by_node_
   std::map<std::string, std::string> stands_for;
   std::vector<Replacement> out;
   std::set<std::uint32_t> commented;  // where the names of those stand
   for (const syntax::Component& c : tree.components) {
     const std::string node = c.node ? c.node->text : "";
-    const auto same_node = nodes.find(node);
-    const auto same_name = names.find(c.name.text);
+    const std::string* same_node = known_in(by_node_, nodes, node);
+    const std::string* same_name = known_in(components_, names, c.name.text);
     std::string other;
-    if (c.node && same_node != nodes.end()) {
-      other = same_node->second;
-    } else if (same_name != names.end() &&
-               (node.empty() || same_name->second.empty() || same_name->second == node)) {
+    if (c.node && same_node != nullptr) {
+      other = *same_node;
+    } else if (same_name != nullptr && (node.empty() || same_name->empty() || *same_name == node)) {
       other = c.name.text;
     }
     if (other.empty()) {

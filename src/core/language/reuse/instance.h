@@ -34,10 +34,12 @@ std::string wrong_count(const syntax::Use& use, const syntax::Template& pattern)
 // "driver(name, topic, hz = 10)"
 std::string usage_of(const syntax::Template& pattern);
 
-// The template's lines with the arguments in them. `source` is file `file`, `lexemes` are its.
+// The template's lines with the arguments in them. `source` is file `file`, `lexemes` are its. If they become larger than
+// `most` bytes, those that come after are left out.
 ComposedText filled_in(const syntax::Template& pattern, std::uint32_t file, const Source& source,
                        const std::vector<Lexeme>& lexemes,
-                       const std::vector<TemplateArgument>& arguments, std::uint32_t step);
+                       const std::vector<TemplateArgument>& arguments, std::uint32_t step,
+                       std::size_t most);
 
 // The piece that the byte at `offset` is of. @pre there is one.
 const Piece& piece_of(const ComposedText& text, std::uint32_t offset);
@@ -62,6 +64,7 @@ class DeclaredNames {
   bool has_component(const std::string& name) const;
 
   std::set<std::string> taken_;                    // by constants, components and signals
+  std::map<std::string, int> tried_;               // of each constant, the last number behind it
   std::map<std::string, std::string> components_;  // their nodes, by name; empty: not declared
   std::map<std::string, std::string> by_node_;     // the names of components
   std::vector<const syntax::File*> inside_;
