@@ -9,7 +9,9 @@
 #include <fmt/ranges.h>
 
 #include "base/text_file.h"
+#include "exemplar_cases/exemplar_cases.h"
 #include "laboratory/commands.h"
+#include "laboratory/study_output.h"
 #include "rca_study/export.h"
 #include "rca_study/learning_report.h"
 #include "rca_study/regret.h"
@@ -29,6 +31,9 @@ using study::rca::RcaFactors;
 using study::rca::RcaRow;
 using study::rca::RepairProcess;
 using study::rca::Times;
+
+constexpr std::size_t kRoverCasesOfEachFault = 1;
+constexpr std::size_t kSunsetCasesOfEachFault = 3;
 
 struct RcaOptions {
   std::vector<std::size_t> components = {200};
@@ -222,6 +227,8 @@ int export_cases(const RcaOptions& options, const RcaCampaign& campaign) {
   if (fs::exists(folder, error) && !fs::is_empty(folder, error))
     return fail(fmt::format("{}: is not an empty folder; choose a new one", folder.string()),
                 kUsage);
+  wanted.others = {{"rover", study::rover_cases(wanted.seed, kRoverCasesOfEachFault)},
+                   {"sunset", study::sunset_cases(wanted.seed, kSunsetCasesOfEachFault)}};
   const StopSignals signals;
   std::optional<Progress> progress;
   const auto written = study::rca::export_cases(

@@ -88,6 +88,11 @@ TEST(StudyRcaExport, WritesTheSmallSetOnce) {
   EXPECT_EQ(export_to(folder, {"--cases", "1", "--common-causes", "1"}), kOk);
   EXPECT_TRUE(std::filesystem::exists(folder / "public/case-0001/truth.json"));
   EXPECT_FALSE(std::filesystem::exists(folder / "hidden"));
+  for (const char* robot : {"rover", "sunset"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / robot / "case-0001/truth.json")) << robot;
+    EXPECT_TRUE(std::filesystem::exists(folder / (std::string(robot) + "-answers-bayes.json")))
+        << robot;
+  }
   EXPECT_THAT(*read_text((folder / "README.md").string()),
               HasSubstr("--cases 1 --components 12,16,20 --faults 1,2,3 --noise 0 "
                         "--detector-latency 0..3s --unwatched 20% --hidden 10% --common-causes 1 "

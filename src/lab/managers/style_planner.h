@@ -1,6 +1,8 @@
 // How managers plan that the paper names beside those of the SUAVE study. None asks which failure is
-// another one's effect. Their articles were not at hand: each comes with the source that it was taken
-// from, and with what of it can be checked (style_planner_test.cpp).
+// another one's effect. The articles were not at hand, so each is in the style of its authors. Each
+// comes with the source that it was taken from, and with what of it can be checked
+// (style_planner_test.cpp). Abstracts: arXiv 1805.03549 and 2005.11180 (Ghahremani), 1805.08678
+// (Vogel).
 //
 //   rebet       Alberts et al., ReBeT, its reactive adaptation logic, from its public code
 //               (EGAlberts/ReBeT, rebet/include/rebet/adapt_node.h): decorators of a behaviour tree,

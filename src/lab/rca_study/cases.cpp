@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "manager/manager.h"
-#include "manager/runtime.h"
 #include "plan/ties.h"
 #include "rca_study/campaign.h"
 #include "rca_study/plant.h"
@@ -233,20 +232,14 @@ class AskingPlanner : public Planner {
 // Notes what others may see of a case.
 class Recorder {
  public:
-  explicit Recorder(RcaCase& made) : made_(made) {}
+  explicit Recorder(RcaCase& made) : made_(made), events_(made.events) {}
 
   void record(const Runtime::Step& step) {
     for (const Observation& observation : step.observations) {
-      const double at_s = seconds(observation.at.time_since_epoch());
-      if (const auto* read = std::get_if<SignalRead>(&observation.what)) note(*read, at_s);
-      const auto* seen = std::get_if<ProcessSeen>(&observation.what);
-      if (seen != nullptr && seen->state == ProcessState::kGone)
-        made_.events.push_back({at_s, seen->component.index, CaseEventKind::kExited});
-      if (const auto* reply = std::get_if<Reply>(&observation.what)) note(*reply, at_s);
+      if (const auto* read = std::get_if<SignalRead>(&observation.what))
+        note(*read, seconds(observation.at.time_since_epoch()));
     }
-    for (const Command& command : step.commands) {
-      if (std::holds_alternative<Probe>(command.what)) asked_[command.id] = command.component.index;
-    }
+    events_.record(step);
   }
 
  private:
@@ -258,17 +251,8 @@ class Recorder {
     made_.readings.back()[read.signal.index] = read.value == Value(true);
   }
 
-  void note(const Reply& reply, double at_s) {
-    const auto asked = asked_.find(reply.command);
-    if (asked == asked_.end()) return;
-    const bool has_answered = reply.outcome == Outcome::kDone;
-    made_.events.push_back({at_s, asked->second,
-                            has_answered ? CaseEventKind::kAnswered : CaseEventKind::kUnanswered});
-    asked_.erase(asked);
-  }
-
   RcaCase& made_;
-  std::map<CommandId, std::size_t> asked_;  // the component
+  CaseEvents events_;
 };
 
 }  // namespace
@@ -285,12 +269,32 @@ std::string_view to_string(CaseEventKind kind) {
   return "unanswered";
 }
 
+void CaseEvents::record(const Runtime::Step& step) {
+  for (const Observation& observation : step.observations) {
+    const double at_s = seconds(observation.at.time_since_epoch());
+    const auto* seen = std::get_if<ProcessSeen>(&observation.what);
+    if (seen != nullptr && seen->state == ProcessState::kGone)
+      events_.push_back({at_s, seen->component.index, CaseEventKind::kExited});
+    const auto* reply = std::get_if<Reply>(&observation.what);
+    const auto asked = reply != nullptr ? asked_.find(reply->command) : asked_.end();
+    if (asked == asked_.end()) continue;
+    const bool has_answered = reply->outcome == Outcome::kDone;
+    events_.push_back({at_s, asked->second,
+                       has_answered ? CaseEventKind::kAnswered : CaseEventKind::kUnanswered});
+    asked_.erase(asked);
+  }
+  for (const Command& command : step.commands) {
+    if (std::holds_alternative<Probe>(command.what)) asked_[command.id] = command.component.index;
+  }
+}
+
 std::optional<CaseTruth> truth_of(const RcaScenario& scenario) {
   const auto& components = scenario.components;
   const Onsets onsets = onsets_of(scenario);
   CaseTruth truth;
   for (const InjectedFault& fault : scenario.faults)
-    truth.causes.push_back({fault, working_repairs(scenario, fault)});
+    truth.causes.push_back(
+        {fault, std::string(to_string(fault.kind)), working_repairs(scenario, fault)});
   std::sort(truth.causes.begin(), truth.causes.end(), [](const CaseCause& a, const CaseCause& b) {
     return a.fault.component < b.fault.component;
   });
@@ -358,6 +362,7 @@ std::optional<RcaCase> case_of(RcaScenario scenario, std::span<const std::string
   };
   runtime.run(robot.is_over(), Time(from_seconds(made.truth.end_s)));
   for (auto& [name, adviser] : asked) made.advice[name] = adviser.advice(rules);
+  made.rules = rules_text(made.scenario);
   return made;
 }
 

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "manager/runtime.h"
 #include "plan/bayes/objective.h"
 #include "rca_study/scenario.h"
 
@@ -22,6 +23,7 @@ namespace culprit::study::rca {
 
 struct CaseCause {
   InjectedFault fault;
+  std::string kind;             // of the fault, as others see it: "silent"
   std::vector<Repair> repairs;  // that end it with a probability of at least 0.5
 };
 
@@ -56,6 +58,18 @@ struct CaseEvent {
   CaseEventKind kind = CaseEventKind::kExited;
 };
 
+// Notes exits of processes, as the operating system reports them, and the answers to questions.
+class CaseEvents {
+ public:
+  // `events` must outlive it.
+  explicit CaseEvents(std::vector<CaseEvent>& events) : events_(events) {}
+  void record(const Runtime::Step& step);
+
+ private:
+  std::vector<CaseEvent>& events_;
+  std::map<CommandId, std::size_t> asked_;  // the component
+};
+
 struct Proposal {
   std::size_t component = 0;
   Repair repair = Repair::kRestart;
@@ -81,6 +95,7 @@ struct RcaCase {
   std::vector<std::vector<bool>> readings;  // by time, by place in `watched`: reported ill
   std::vector<CaseEvent> events;
   std::map<std::string, Advice> advice;  // by planner
+  std::string rules;                     // that the planners have, as text
 };
 
 // The scenario as a case; nothing if it has no truth that counts. The same scenario gives the same

@@ -7,8 +7,6 @@
 #include "json/json.h"
 #include "knowledge/describe.h"
 #include "rca_study/benchmark_files.h"
-#include "rca_study/cases.h"
-#include "rca_study/rules.h"
 #include "simulation/random.h"
 
 namespace culprit::study::rca {
@@ -85,7 +83,7 @@ Json truth_json(const RcaCase& made) {
     Json repairs = Json::array();
     for (const Repair repair : cause.repairs) repairs.push_back(to_string(repair));
     truth["causes"].push_back({{"component", scenario.components[cause.fault.component].name},
-                               {"kind", to_string(cause.fault.kind)},
+                               {"kind", cause.kind},
                                {"at_s", in_milliseconds(cause.fault.at_s)},
                                {"repairs", std::move(repairs)}});
   }
@@ -130,36 +128,60 @@ class Exporter {
     write("score.py", kScorer);
     write_cases(wanted_.seed, wanted_.cases, false);
     if (wanted_.hidden_seed) write_cases(*wanted_.hidden_seed, wanted_.hidden_cases, true);
+    for (const auto& [robot, cases] : wanted_.others) write_others(robot, cases);
     return error_ ? Expected<void>(*error_) : Expected<void>();
   }
 
  private:
+  using Answers = std::map<std::string, Json>;  // by adviser
+
+  static std::string name_of(std::size_t i) { return fmt::format("case-{:04}", i + 1); }
+
   void write_cases(std::uint64_t seed, std::size_t count, bool is_hidden) {
     Json truths = Json::object();
-    std::map<std::string, Json> answers;
+    Answers answers;
     Tries tries{seed};
     for (std::size_t i = 0; i < count && !error_; ++i) {
       const auto made = next_case(wanted_.settings[i % wanted_.settings.size()], tries);
       if (!made) return;
-      const std::string name = fmt::format("case-{:04}", i + 1);
+      const std::string name = name_of(i);
       const std::string folder = (is_hidden ? "hidden/" : "public/") + name + "/";
-      write(folder + "graph.json", graph_of(made->scenario));
-      write(folder + "signals.csv", signals_of(*made));
-      write(folder + "events.csv", events_of(*made));
-      write(folder + "robot.rules", rules_text(made->scenario));
+      write_case(folder, name, *made, answers);
       Json truth = truth_json(*made);
       if (!is_hidden) write(folder + "truth.json", entry_by_entry(truth));
       truths[name] = std::move(truth);
-      for (const auto& [adviser, advice] : made->advice)
-        answers.try_emplace(adviser, Json::object()).first->second[name] =
-            answer_json(made->scenario, advice);
       const std::size_t total = wanted_.cases + (wanted_.hidden_seed ? wanted_.hidden_cases : 0);
       if (go_on_ && !go_on_(++done_, total)) complain("it was interrupted");
     }
     if (is_hidden) write("hidden-truth.json", member_by_member(truths));
+    write_answers(is_hidden ? "hidden-" : "", answers);
+  }
+
+  void write_others(const std::string& robot, const std::vector<RcaCase>& cases) {
+    Answers answers;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const std::string folder = robot + "/" + name_of(i) + "/";
+      write_case(folder, name_of(i), cases[i], answers);
+      write(folder + "truth.json", entry_by_entry(truth_json(cases[i])));
+    }
+    write_answers(robot + "-", answers);
+  }
+
+  // Graph, signals, events and rules; and the answers of the advisers.
+  void write_case(const std::string& folder, const std::string& name, const RcaCase& made,
+                  Answers& answers) {
+    write(folder + "graph.json", graph_of(made.scenario));
+    write(folder + "signals.csv", signals_of(made));
+    write(folder + "events.csv", events_of(made));
+    write(folder + "robot.rules", made.rules);
+    for (const auto& [adviser, advice] : made.advice)
+      answers.try_emplace(adviser, Json::object()).first->second[name] =
+          answer_json(made.scenario, advice);
+  }
+
+  void write_answers(const std::string& prefix, const Answers& answers) {
     for (const auto& [adviser, of_all] : answers)
-      write(fmt::format("{}answers-{}.json", is_hidden ? "hidden-" : "", adviser),
-            member_by_member(of_all));
+      write(fmt::format("{}answers-{}.json", prefix, adviser), member_by_member(of_all));
   }
 
   struct Tries {

@@ -7,9 +7,11 @@
 //     hidden-truth.json            of all hidden cases
 //     answers-bayes.json           of each adviser, on the public cases
 //     hidden-answers-bayes.json    on the hidden ones
+//     sunset/case-0001/            of other robots, as the public ones; sunset-answers-bayes.json
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +19,7 @@
 #include "base/expected.h"
 #include "plan/bayes/objective.h"
 #include "rca_study/campaign.h"
+#include "rca_study/cases.h"
 
 namespace culprit::study::rca {
 
@@ -32,6 +35,7 @@ struct CaseExport {
   std::optional<std::uint64_t> hidden_seed;  // it is in no file
   std::vector<std::string> advisers = {"bayes", "informed", "paper"};
   Objective objective = Objective::kBalanced;
+  std::map<std::string, std::vector<RcaCase>> others{};  // by robot: "sunset"
   std::string command;  // that makes the public cases, for README.md
 };
 

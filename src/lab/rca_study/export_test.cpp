@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -320,12 +321,34 @@ TEST_F(Scorer, CountsWrongAndUselessRepairs) {
 
 TEST_F(Scorer, RunsTheSimpleMethodsBesideOurs) {
   const Json both = scores("public answers-bayes.json answers-paper.json --baseline all");
-  EXPECT_EQ(both.size(), 7U);
+  EXPECT_EQ(both.size(), 8U);
   for (const auto& [name, score] : both.items()) EXPECT_EQ(score["cases"], 4) << name;
   EXPECT_GE(both["answers-bayes"]["top1"], 0.5);
   EXPECT_EQ(both, scores("public answers-bayes.json answers-paper.json --baseline all"));
   EXPECT_THAT(run("hidden hidden-answers-bayes.json --truth hidden-truth.json").text,
               HasSubstr("AC@1"));
+}
+
+// A cause that flaps, and an effect that follows it in part. Their failures begin together, so only the dependence tells them
+// apart.
+TEST_F(Scorer, SeparatesAnEffectFromItsCauseByCausalDiscovery) {
+  std::string signals = "time_s,effect,zcause\n";
+  for (int i = 0; i < 60; ++i) {
+    const bool is_cause_ill = i >= 30 && i % 5 != 0;
+    const bool is_effect_ill = is_cause_ill && i % 3 != 0;
+    signals += fmt::format("{:.1f},{:d},{:d}\n", i * 0.2, is_effect_ill, is_cause_ill);
+  }
+  const fs::path chain = folder_ / "chain/case-0001";
+  fs::create_directories(chain);
+  ASSERT_TRUE(write_text((chain / "signals.csv").string(), signals));
+  ASSERT_TRUE(write_text((chain / "graph.json").string(),
+                         R"({"components": [{"name": "effect", "watched": true},
+                                            {"name": "zcause", "watched": true}], "topics": []})"));
+  ASSERT_TRUE(write_text((chain / "truth.json").string(),
+                         R"({"causes": [{"component": "zcause", "at_s": 6, "repairs": []}]})"));
+  const Json found = scores("chain --baseline causal-discovery --baseline first-failing");
+  EXPECT_EQ(found["causal-discovery"]["exact"], 1.0);
+  EXPECT_EQ(found["first-failing"]["top1"], 0.0);
 }
 
 TEST_F(Scorer, RefusesHostileAnswersWithThePlace) {

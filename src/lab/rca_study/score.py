@@ -7,6 +7,7 @@ Exit codes: 0 scored, 2 wrong input (the message names the place).
 
 import argparse
 import csv
+import itertools
 import json
 import math
 import os
@@ -18,6 +19,9 @@ DAMPING = 0.85  # of PageRank
 RECENT_S = 5.0  # failing: reported in at least half of the readings of the last 5 s
 BRIDGED_S = 2.0  # shorter pauses do not end a failure (a flapping component is well for 1.5 s)
 LEADS_S = (0.0, 1.0, 2.0, 3.0)  # how much later a signal may follow another one
+CHUNK = 5  # of RCD, as its authors' code has it, like the levels of significance
+CHUNK_ALPHAS = tuple(0.01 + 0.1 * i for i in range(10))
+LAST_ALPHAS = tuple(0.001 + 0.1 * i for i in range(10))
 
 
 class Problem(Exception):
@@ -387,11 +391,88 @@ def change_point(case):
     return sorted((c for c in case.watched if result[c] > 0), key=lambda c: (-round(result[c], 9), c))
 
 
+def chi_square_p(statistic, degrees):
+    """The probability of a larger statistic: the upper incomplete gamma function of half the degrees."""
+    y = statistic / 2
+    s = 0.5 if degrees % 2 else 1.0
+    p = math.erfc(math.sqrt(y)) if degrees % 2 else math.exp(-y)
+    term = y**s * math.exp(-y) / math.gamma(s + 1)
+    while s < degrees / 2:
+        p += term
+        s += 1
+        term *= y / s
+    return p
+
+
+def independence_p(signal, failure, given, all_readings):
+    """The chi-square test of two signals, given others. Signals are integers with a bit for each reading."""
+    strata = [all_readings]
+    for other in given:
+        strata = [part for stratum in strata for part in (stratum & other, stratum & ~other)]
+    statistic, degrees = 0.0, 0
+    for stratum in strata:
+        n, a, b, both = (bin(stratum & bits).count("1") for bits in (-1, signal, failure, signal & failure))
+        if 0 < a < n and 0 < b < n:
+            statistic += n * (both * n - a * b) ** 2 / (a * b * (n - a) * (n - b))
+            degrees += 1
+    return chi_square_p(statistic, degrees) if degrees else 1.0
+
+
+def failure_neighbours(signals, failure, all_readings, alpha):
+    """The signals that no other ones separate from the failure (the PC algorithm), the most significant first."""
+    weakest = dict.fromkeys(signals, 0.0)  # the largest p of each
+    size = 0
+    while size < len(weakest):
+        for c in list(weakest):
+            for given in itertools.combinations([other for other in weakest if other != c], size):
+                p = independence_p(signals[c], failure, [signals[other] for other in given], all_readings)
+                weakest[c] = max(weakest[c], p)
+                if p > alpha:
+                    del weakest[c]
+                    break
+        size += 1
+    return sorted(weakest, key=lambda c: (weakest[c], c))
+
+
+def causal_discovery(case):
+    """RCD (Ikram et al., NeurIPS 2022): a failure is an intervention on its cause, so of all signals only those of causes
+    depend on "before or after the failure began" whatever others are given. It looks for these in chunks, then among
+    the chunks' findings.
+
+    Here the failure begins with the first one that lasts. Signals are 0 and 1 already, and chunks are in the file's order."""
+    failing = case.failing()
+    if not failing:
+        return []
+    begin = min(map(case.onset, failing))
+
+    def bits(values):
+        return sum(1 << i for i, value in enumerate(values) if value)
+
+    failure, all_readings = bits(t >= begin for t in case.times), bits([1] * len(case.times))
+    signals = {c: bits(case.signals[c]) for c in case.watched}
+
+    def neighbours(chunk, alpha):
+        return failure_neighbours({c: signals[c] for c in chunk}, failure, all_readings, alpha)
+
+    left, count = case.watched, None
+    while left and len(left) != count:
+        count = len(left)
+        chunks = [left[i : i + CHUNK] for i in range(0, count, CHUNK)]
+        left = [c for chunk in chunks for c in next(filter(None, (neighbours(chunk, a) for a in CHUNK_ALPHAS)), [])]
+        if len(left) <= CHUNK:
+            break
+    ranked = []
+    for alpha in LAST_ALPHAS:
+        ranked += [c for c in neighbours(left, alpha) if c not in ranked]
+    return ranked
+
+
 BASELINES = {
     "upstream-first": upstream_first,
     "pagerank": pagerank,
     "correlation": correlation,
     "change-point": change_point,
+    "causal-discovery": causal_discovery,
     "first-failing": first_failing,
 }
 

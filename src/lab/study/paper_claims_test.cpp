@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "study/published.h"
 #include "study/tables/claims_tables.h"
 #include "study/test_findings.h"
 
@@ -25,12 +26,31 @@ TEST(PaperClaims, HoldForDataAsThePaperPrintsIt) {
         "D, C and S: next highest ratio", "D raises the ratio where C is on",
         "C delays reactions where only D is on", "S spares redeployments everywhere",
         "S lowers the ratio of D and C", "S shortens reactions where C is on",
-        "P off by 20 % changes nothing"})
+        "means with P off by 20 %", "P off by 20 % changes nothing"})
     EXPECT_EQ(named(claims, text).verdict, Verdict::kHolds) << text;
   EXPECT_EQ(
       std::count_if(claims.begin(), claims.end(),
                     [](const Claim& claim) { return claim.verdict == Verdict::kContradicted; }),
       0);
+}
+
+// Every cell of the paper's table of effects is part of a claim: those that are coloured, and those that are not.
+TEST(PaperClaims, CoverEachCellOfTheTableOfEffects) {
+  const Findings findings = synthetic_findings(20);
+  const std::vector<Claim> claims = paper_claims(findings, ablations(findings.campaign).front());
+  std::size_t parts = 0;
+  for (const char* text :
+       {"D raises the ratio where C is on", "D spares redeployments where C or S is on",
+        "C raises the ratio where D is on", "C spares redeployments where D is on",
+        "C delays reactions where only D is on", "S spares redeployments everywhere",
+        "S lowers the ratio of D and C", "S shortens reactions where C is on",
+        "D has no other effect", "C has no other effect", "S has no other effect",
+        "no switch changes the downtime"})
+    parts += named(claims, text).parts.size();
+  EXPECT_EQ(parts, published::effects().size() * kPublishedMetrics.size());
+  EXPECT_EQ(named(claims, "D has no other effect").parts.size(), 7U);
+  EXPECT_EQ(named(claims, "C has no other effect").parts.size(), 7U);
+  EXPECT_EQ(named(claims, "S has no other effect").parts.size(), 5U);
 }
 
 TEST(PaperClaims, ComeWithTheOrderOfTheConfigurations) {
