@@ -76,6 +76,21 @@ std::string suspects_of(const Json& body) {
   return out;
 }
 
+std::string hinges_of(const Json& body) {
+  std::string out;
+  for (const Json& suspect : body.value("suspects", Json::array())) {
+    const Json evidence =
+        suspect.is_object() ? suspect.value("evidence", Json::array()) : Json::array();
+    for (const Json& piece : evidence) {
+      const std::string without = text_of(piece, "without");
+      if (!without.empty())
+        out += fmt::format("  without \"{}\", {} would be responsible\n", text_of(piece, "text"),
+                           without);
+    }
+  }
+  return out.empty() ? "" : "\nWhat would change this\n" + out;
+}
+
 std::string candidates_of(const Json& body) {
   const Json candidates = body.value("candidates", Json::array());
   if (!candidates.is_array() || candidates.empty()) return "";
@@ -156,7 +171,7 @@ Expected<std::string> explain_decision(const journal::Reader& journal, std::int6
   std::string out =
       fmt::format("Row {}, {}\n{}\n", entry.id, local_time(entry.at), text_of(body, "text"));
   if (!is_decision(entry, body)) return out + to_indented(body) + "\n";
-  out += suspects_of(body) + candidates_of(body);
+  out += suspects_of(body) + hinges_of(body) + candidates_of(body);
   if (!sequel.empty()) out += "\nOutcome\n";
   for (const Entry& each : sequel) {
     if (const std::string line = log_line(each); !line.empty()) out += line + "\n";

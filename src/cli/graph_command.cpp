@@ -6,13 +6,14 @@
 
 #include "base/ros_names.h"
 #include "cli/commands.h"
-#include "cli/rule_graph.h"
+#include "cli/diagnostic_report.h"
 #include "json/json.h"
 #include "knowledge/dependency_graph.h"
 #include "knowledge/dependency_path.h"
 #include "live/live_robot.h"
 #include "live/rule_file.h"
 #include "ros2/options.h"
+#include "rule_graph/rule_graph.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
 
@@ -143,7 +144,7 @@ void print_json(const Picture& picture) {
 void print_dot(const Picture& picture) {
   fmt::print("digraph robot {{\n  rankdir=LR;\n  node [shape=box];\n");
   for (const auto& [node, place] : picture.nodes)
-    fmt::print("  \"{}\" [label={}];\n", node, in_dot(node + in_words(place)));
+    fmt::print("  \"{}\" [label={}];\n", node, rule_graph::in_dot(node + in_words(place)));
   for (const auto& edge : picture.edges) {
     fmt::print("  \"{}\" -> \"{}\" [label=\"{}\"];\n", edge.producer, edge.consumer, edge.channel);
   }
@@ -194,8 +195,10 @@ int show_rule_graph(const GraphOptions& options) {
       live::read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
   if (!loaded) return fail(loaded.error());
   fmt::print(stderr, "{}", loaded->remarks);
-  const RuleGraph graph = graph_of(loaded->rules, loaded->source);
-  fmt::print("{}", options.json ? as_json(graph) : options.dot ? as_dot(graph) : as_text(graph));
+  const rule_graph::RuleGraph graph = rule_graph::graph_of(loaded->rules, loaded->source);
+  fmt::print("{}", options.json  ? to_text(as_json(graph)) + "\n"
+                   : options.dot ? as_dot(graph)
+                                 : as_text(graph));
   return kOk;
 }
 

@@ -109,6 +109,12 @@ Json report_as_json(const incident_reports::PageContent& content,
       content.incident, incident_reports::recordings_of(content.incident, recordings));
   json["robot"] = content.robot;
   json["events"] = content.events;
+  json["requests"] = Json::array();
+  for (const incident_reports::Request& each : content.requests)
+    json["requests"].push_back({{"clock", each.clock},
+                                {"text", each.text},
+                                {"answer", each.answer},
+                                {"seconds", each.seconds ? Json(*each.seconds) : Json()}});
   json["curves"] = Json::array();
   json["remarks"] = content.remarks;
   if (!content.curves) return json;

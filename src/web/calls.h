@@ -92,7 +92,7 @@ std::vector<Route> status_routes(Hub& hub, const Metrics& metrics,
 
 // ---- the rules
 
-// The rule file: read, check, ask the language server, change form, save.
+// The rule file: read, check, ask the language server, draw, change form, save.
 std::vector<Route> rule_routes(RuleDesk& desk);
 
 // Decides for a given state of the robot, as `planner` does (docs/plan.md). Changes nothing and needs no robot. `load` finds what

@@ -1,11 +1,14 @@
 // No alarm is not health: each state that nobody can call well has a look of its own.
 #include "web/overview.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"
 #include "web/component_health.h"
+#include "web/robot_json.h"
 
 namespace culprit::web {
 namespace {
@@ -155,6 +158,37 @@ TEST(Overview, IsTheFirstIncidentAndCountsTheOthers) {
   EXPECT_EQ(some.overview().headline, "camera is down, and 1 more");
   EXPECT_EQ(some.overview().detail, "nothing is done: culprit is paused");
   EXPECT_EQ(some.look(0).condition, "down");
+}
+
+// The camera is held responsible for both failures; fusion would be for its own if the camera's rule did not fire.
+TEST(Overview, SaysWhatTheBlameHingesOn) {
+  Overlooked some(R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY redeploy_camera 90 10
+      ADAPTATION camera redeploy 20
+RULE FusionSilent
+  POLICIES ERROR
+  TRIGGER age(/fused) > 1s
+    STRATEGY restart_fusion 90 10
+      ADAPTATION fusion restart 5
+)");
+  some.is_bright = false;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("fusion", {"camera"}, "/fused");
+  some.robot.discover();
+  some.run(30s);
+  some.robot.order({1, "ada", "", Pause{}});
+  some.robot.kill("camera");
+  some.robot.run_for(3s);
+  const Json incident = incidents_to_json(some.robot.manager(), Time{}).at(0);
+  ASSERT_EQ(incident["consequences"], Json::array({"FusionSilent"})) << transcript(some.robot);
+  const Json wanted{{"rule", "FusionSilent"}, {"text", "CameraDead fires"}, {"without", "fusion"}};
+  const Json& hinges = incident["hinges_on"];
+  EXPECT_NE(std::ranges::find(hinges, wanted), hinges.end()) << to_line(hinges);
 }
 
 }  // namespace

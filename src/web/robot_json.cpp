@@ -322,6 +322,24 @@ Json control_to_json(const Manager& manager, Time start) {
   return json;
 }
 
+// The evidence for the cause of each failure, if another component would be held responsible without it.
+Json hinges_to_json(const Incident& incident, const Manager& manager) {
+  Json list = Json::array();
+  const auto add = [&](RuleId failure) {
+    for (const Suspect& suspect : manager.incidents().suspects_of(failure)) {
+      for (const Evidence& each : suspect.evidence) {
+        if (each.without.empty()) continue;
+        list.push_back({{"rule", manager.knowledge().rules[failure].name},
+                        {"text", each.text},
+                        {"without", each.without}});
+      }
+    }
+  };
+  add(incident.root);
+  for (const RuleId failure : incident.consequences) add(failure);
+  return list;
+}
+
 Json incidents_to_json(const Manager& manager, Time start) {
   const RuleSet& rules = manager.knowledge().rules;
   Json list = Json::array();
@@ -337,6 +355,7 @@ Json incidents_to_json(const Manager& manager, Time start) {
          {"certain", each.is_certain},
          {"host", each.host.empty() ? Json(nullptr) : Json(each.host)},
          {"consequences", names_of(each.consequences, rules)},
+         {"hinges_on", hinges_to_json(each, manager)},
          {"needs_person", each.needs_person()},
          {"doing", course.doing},
          {"next", course.next}});

@@ -189,6 +189,21 @@ TEST_F(Routes, CheckATextAsYouType) {
   EXPECT_THAT(answer.body["diagnostics"][0]["message"].get<std::string>(), HasSubstr("RULE"));
 }
 
+TEST_F(Routes, DrawATextAsYouType) {
+  const Json drawn = ask("post /api/rules/graph", {{"text", kRouteRules}}).body;
+  EXPECT_EQ(drawn["errors"], 0);
+  EXPECT_EQ(drawn["components"][0]["name"], "camera");
+  EXPECT_EQ(drawn["rules"][0]["adapts"], Json::array({"camera"}));
+  const Answer wrong =
+      ask("post /api/rules/graph", {{"text", std::string(kRouteRules) + "RULE Second\n"}});
+  EXPECT_EQ(wrong.status, 200);
+  EXPECT_EQ(wrong.body["rules"][1]["mistake"], "error");
+  EXPECT_FALSE(wrong.body["rules"][0].contains("mistake"));
+  std::string large;
+  for (int i = 0; i < 2001; ++i) large += "COMPONENT c" + std::to_string(i) + " NODE /c\n";
+  EXPECT_EQ(ask("post /api/rules/graph", {{"text", large}}).status, 422);
+}
+
 TEST_F(Routes, SaveTheFileThatWasOpened) {
   const Json opened = ask("get /api/rules").body;
   EXPECT_EQ(opened["text"], "");

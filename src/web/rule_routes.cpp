@@ -3,6 +3,7 @@
 #include "language/checker.h"
 #include "lsp/language_server.h"
 #include "rule_files/rule_files.h"
+#include "rule_graph/draft.h"
 #include "rule_json/from_json.h"
 #include "rule_json/to_json.h"
 #include "web/calls.h"
@@ -86,6 +87,17 @@ Answer as_text(const Json& body) {
   return {200, {{"text", *text}}};
 }
 
+Answer graph(const RuleDesk& desk, const Json& body) {
+  const auto text = text_of(body, "text");
+  if (!text) return refuse(400, "send the rules as 'text'");
+  const auto draft = rule_graph::graph_of_draft(expand(Source(kTextOfPage, *text), desk.loader()));
+  if (!draft) return refuse(422, draft.error());
+  Json answer = rule_graph::as_json(draft->graph);
+  answer["errors"] = draft->errors;
+  answer["warnings"] = draft->warnings;
+  return {200, std::move(answer)};
+}
+
 }  // namespace
 
 std::vector<Route> rule_routes(RuleDesk& desk) {
@@ -93,6 +105,8 @@ std::vector<Route> rule_routes(RuleDesk& desk) {
           {Method::kPut, "/api/rules", [&desk](const Json& body) { return save(desk, body); }},
           {Method::kPost, "/api/rules/ask", [&desk](const Json& body) { return ask(desk, body); },
            Role::kLook},
+          {Method::kPost, "/api/rules/graph",
+           [&desk](const Json& body) { return graph(desk, body); }, Role::kLook},
           {Method::kPost, "/api/rules/json", as_json, Role::kLook},
           {Method::kPost, "/api/rules/text", as_text, Role::kLook}};
 }

@@ -136,6 +136,7 @@ export interface Editor {
   undo(): void
   redo(): void
   goTo(at: number): void
+  goToLine(line: number): void
 }
 
 // CodeMirror writes its styles into a document by a style element, which the content security policy
@@ -250,6 +251,10 @@ export function makeEditor(
       ],
     }),
   })
+  const goTo = (at: number) => {
+    view.dispatch({ selection: { anchor: at }, scrollIntoView: true })
+    view.focus()
+  }
   return {
     view,
     setText(next) {
@@ -259,9 +264,7 @@ export function makeEditor(
     fix: (all) => applyAll(view, all),
     undo: () => void undo(view),
     redo: () => void redo(view),
-    goTo(at) {
-      view.dispatch({ selection: { anchor: at }, scrollIntoView: true })
-      view.focus()
-    },
+    goTo,
+    goToLine: (line) => goTo(view.state.doc.line(Math.min(line, view.state.doc.lines)).from),
   }
 }

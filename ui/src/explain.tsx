@@ -12,7 +12,7 @@ import { usePaced } from './paced'
 import { signalOf, toAddress } from './plotted'
 import { isIll, kLooks, type Look, rankOf } from './looks'
 import { blindRules, can, clockAt, conditionAt, culprits, graph, isLive, live, looks, now, robot, selected, state } from './store'
-import type { Candidate, Criticality, Evidence, ManagerEvent } from './types'
+import type { Candidate, Criticality, Evidence, ManagerEvent, Suspect } from './types'
 
 export const kWords: Record<Criticality, string> = {
   ERROR: 'error',
@@ -36,6 +36,24 @@ function EvidenceList({ evidence }: { evidence: Evidence[] }) {
         </li>
       ))}
     </ul>
+  )
+}
+
+// As culprit computed it with the decision.
+function WhatWouldChange({ suspects }: { suspects: Suspect[] }) {
+  const hinges = suspects.flatMap(({ evidence }) => (evidence ?? []).filter((each) => each.without))
+  if (hinges.length === 0) return null
+  return (
+    <>
+      <h3>What would change this</h3>
+      <ul class="evidence">
+        {hinges.map(({ text, without }) => (
+          <li>
+            Without “{text}”, <b>{without}</b> would be held responsible.
+          </li>
+        ))}
+      </ul>
+    </>
   )
 }
 
@@ -87,7 +105,9 @@ function Onsets({ decision }: { decision: ManagerEvent }) {
         <tbody>
           {onsets.map(({ component, text, age, isFor }) => (
             <tr>
-              <th scope="row">{component}</th>
+              <th scope="row">
+                {component}: <small>{text}</small>
+              </th>
               <td class="axis">
                 <svg width="100%" height="16" aria-hidden="true">
                   <line x1={at(age)} x2={at(0)} y1="8" y2="8" />
@@ -95,7 +115,6 @@ function Onsets({ decision }: { decision: ManagerEvent }) {
                 </svg>
               </td>
               <td class="number">{lasting(age)} before</td>
-              <td>{text}</td>
             </tr>
           ))}
         </tbody>
@@ -161,6 +180,7 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
     <details class="why" open={isOpen}>
       <summary>Possible causes and repairs</summary>
       <Suspects decision={decision} rule={failure.rule} />
+      <WhatWouldChange suspects={decision.suspects ?? []} />
       <Onsets decision={decision} />
       <Candidates
         list={decision.candidates ?? []}

@@ -13,6 +13,7 @@ import { follow } from './live_names'
 import { authorName } from './order'
 import { relations, RuleConflicts } from './rule_conflicts'
 import { RuleForm } from './rule_form'
+import { RuleGraphView } from './rule_graph_view'
 import type { RuleDocument } from './rule_document'
 import { can } from './store'
 
@@ -311,11 +312,14 @@ export function RulesPage() {
         </pre>
       )}
       <div class="sides">
-        <section class="form" aria-label="Form" inert={!!unreadable.value}>
-          {form.value && <RuleConflicts list={relations(form.value, text.value, found.value)} />}
-          {form.value && <RuleForm document={form.value} change={change} />}
-          {form.value && <Hindsight document={form.value} hasErrors={errors > 0} />}
-        </section>
+        <div class="beside">
+          <RuleGraphView text={() => text.value} onLine={(line) => editor.current?.goToLine(line)} />
+          <section class="form" aria-label="Form" inert={!!unreadable.value}>
+            {form.value && <RuleConflicts list={relations(form.value, text.value, found.value)} />}
+            {form.value && <RuleForm document={form.value} change={change} />}
+            {form.value && <Hindsight document={form.value} hasErrors={errors > 0} />}
+          </section>
+        </div>
         <section class="text" aria-label="Text">
           <div class="editor" ref={place} />
           {fixes.length > 1 && (

@@ -116,6 +116,7 @@ export interface Evidence {
   text: string
   age_ns?: number
   log_odds: number // below 0 it speaks against the suspect
+  without?: string // the component that would be held responsible without it; none: the same one
 }
 export interface ManagerEvent {
   number: number // of this page's counting

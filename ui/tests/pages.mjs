@@ -3,7 +3,7 @@
 import { largeRobot } from './large_robot.mjs'
 import { isLaidOut } from './layout.mjs'
 import { kSizes, pictures } from './pictures.mjs'
-import { kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
+import { hinging, kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
 import { expect, expectSoon, file, isAccessible, isFirefox, isUsableByKeyboard, kSchemes, saved, stubbed, suite } from './session.mjs'
 
 const kFindings = [
@@ -325,6 +325,23 @@ async function guidesNewcomers(page, server) {
   expect((await tour.count()) === 0, 'the tour does not end')
 }
 
+async function tellsWhatWouldChange(page, server) {
+  await become(page, server, kStates.ill, 'robot')
+  const why = page.getByRole('region', { name: 'Explanation' }).locator('.incident > .why').first() // of the root cause
+  await why.getByText('camera exited').first().waitFor()
+  expect((await why.getByText('What would change this').count()) === 0, 'something would change a decision that hinges on nothing')
+  await become(page, server, hinging(kStates.ill), 'robot')
+  await why.getByText('Without “camera exited”, fusion would be held responsible.').waitFor()
+  await why.getByText('What began first').click()
+  await why.getByRole('rowheader', { name: 'camera: camera exited' }).waitFor()
+  for (const [width, height] of [[1024, 768], [1440, 900]]) {
+    await page.setViewportSize({ width, height })
+    await isLaidOut(page, `the evidence of a decision, ${width} × ${height}`)
+    const hidden = await page.locator('.cause-first').evaluate((column) => column.scrollWidth - column.clientWidth)
+    expect(hidden <= 0, `the right column is ${hidden} pixels too wide at ${width} pixels`)
+  }
+}
+
 // The robot is drawn where it is, for as long as somebody looks; what is old looks old.
 async function drawsTheMap(page, server) {
   await become(page, server, kStates.ill, 'map')
@@ -482,6 +499,7 @@ await suite(() =>
       const album = await pictures(page, file(''))
       await everyPage(page, server, album)
       await tellsOfAComponent(page, server, album)
+      await tellsWhatWouldChange(page, server)
       await keepsItsPlaces(page, server)
       await hangsOnTheWall(page, server, album)
       await tellsIncidents(page, server, album)

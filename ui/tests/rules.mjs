@@ -1,6 +1,7 @@
 // Writing rules in the browser, with and without knowing the language.
 import { buildsThePapersRule, losesNothingToASlowServer, showsWhatIsSaidOfTheNewestText } from './builder.mjs'
 import { losesNothingThatWasWritten } from './drafts.mjs'
+import { drawsTheFile } from './file_graph.mjs'
 import { writesEveryRow } from './grammar.mjs'
 import { mendsABrokenFile } from './repair.mjs'
 import { isFirefox, suite } from './session.mjs'
@@ -11,6 +12,7 @@ await suite(async () => {
   await buildsThePapersRule()
   await mendsABrokenFile()
   if (isFirefox) return
+  await drawsTheFile()
   await losesNothingToASlowServer()
   await showsWhatIsSaidOfTheNewestText()
   await writesEveryRow()

@@ -279,6 +279,7 @@ class EventWriter {
     json_.member("text", evidence.text);
     if (evidence.age) json_.member("age_ns", evidence.age->count());
     json_.member("log_odds", evidence.log_odds);
+    if (!evidence.without.empty()) json_.member("without", evidence.without);
     json_.end_object();
   }
   void add(const Candidate& candidate) const {

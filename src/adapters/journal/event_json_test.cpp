@@ -33,7 +33,7 @@ std::vector<EventWhat> samples() {
   const Candidate tried{StrategyId(1), 0.75, Condition::kTried, {}, std::nullopt, "", 0, 0};
   const std::vector<Candidate> candidates{chosen, tried};
   const std::vector<Suspect> suspects{
-      {c, r, 0.25, {{EvidenceSource::kKernel, "camera exited", 1200ms, 2.5}}}};
+      {c, r, 0.25, {{EvidenceSource::kKernel, "camera exited", 1200ms, 2.5, "fusion"}}}};
   return {FailureDetected{r},
           FailureResolved{r, FailureResolved::How::kByStrategy, s, 1500ms},
           FailureResolved{r, FailureResolved::How::kWithoutStrategy, std::nullopt, 2s},

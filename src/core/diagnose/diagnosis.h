@@ -56,6 +56,8 @@ class Diagnosis {
   double of(std::size_t i) const { return own_[i]; }
   // P(own i) alone: what others outside its loop leave unexplained.
   double against_others(std::size_t i) const { return against_others_[i]; }
+  // pi_i
+  double prior(std::size_t i) const { return prior_[i]; }
   // kappa(j -> i)
   double kappa(std::size_t j, std::size_t i) const;
   // X_i

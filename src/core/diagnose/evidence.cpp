@@ -36,16 +36,20 @@ EvidenceSource source_of(Trouble trouble) {
 
 class Collector {
  public:
-  Collector(const Examination& found, const Knowledge& knowledge)
-      : causes_(found.causes()), diagnosis_(found.diagnosis()), knowledge_(knowledge) {}
+  Collector(const Otherwise& otherwise, const Examination& found, const Knowledge& knowledge)
+      : otherwise_(otherwise),
+        causes_(found.causes()),
+        diagnosis_(found.diagnosis()),
+        knowledge_(knowledge) {}
 
-  std::vector<Evidence> own(std::size_t i) {
+  std::vector<PieceOfEvidence> own(std::size_t i) {
     const double explained = diagnosis_.explained(i);
     for (const ComponentId c : touched_by(causes_[i].rule, knowledge_)) {
       if (is_known_down(causes_[i].rule, knowledge_) && is_known_down(c, knowledge_))
         add(EvidenceSource::kKernel, name(c) + " exited or is stopped",
             knowledge_.components[c].process_since, logit(kKnownDown));
     }
+    if (all_.size() == 1) change(otherwise_.with_prior(kCoincidence));
     if (explained <= 0) {
       add(EvidenceSource::kMeasured, "nothing upstream is wrong", kLongAgo, kSurely);
     } else if (all_.empty()) {
@@ -64,7 +68,7 @@ class Collector {
     return heaviest_first();
   }
 
-  std::vector<Evidence> other(std::size_t j, std::size_t i) {
+  std::vector<PieceOfEvidence> other(std::size_t j, std::size_t i) {
     const CauseNode& node = causes_[j];
     const double weight = std::log(Coupling::kUsual) + kSurely;
     switch (node.kind) {
@@ -84,16 +88,21 @@ class Collector {
         add(EvidenceSource::kGraph, "no node offers " + node.channel, kLongAgo, weight);
         break;
     }
+    change(otherwise_.without(j));
     const double timely = causes_.timely(j, i);
-    if (timely < 1)
+    const double kappa = diagnosis_.kappa(j, i);
+    if (timely < 1) {
       add(EvidenceSource::kMeasured, name(causes_[i].rule) + " did not follow at once",
           node.onset.latest, std::log(timely));
-    const double kappa = diagnosis_.kappa(j, i);
-    if (kappa != Coupling::kUsual)
+      change(otherwise_.if_passed(j, kappa));
+    }
+    if (kappa != Coupling::kUsual) {
       add(EvidenceSource::kLearned,
           kappa > Coupling::kUsual ? "they cleared together before"
                                    : "one stayed before when the other cleared",
           kLongAgo, std::log(kappa / Coupling::kUsual));
+      change(otherwise_.if_passed(j, Coupling::kUsual * timely));
+    }
     return heaviest_first();
   }
 
@@ -110,28 +119,34 @@ class Collector {
   void add(EvidenceSource source, std::string text, Time since, double log_odds) {
     std::optional<Duration> age;
     if (since != kLongAgo && since <= knowledge_.now) age = knowledge_.now - since;
-    all_.push_back({source, std::move(text), age, bounded(log_odds)});
+    all_.push_back({{source, std::move(text), age, bounded(log_odds)}});
   }
-  std::vector<Evidence> heaviest_first() {
-    std::stable_sort(all_.begin(), all_.end(), [](const Evidence& a, const Evidence& b) {
-      return std::abs(a.log_odds) > std::abs(b.log_odds);
-    });
+  // Without the last piece, `next` would be the likeliest.
+  void change(std::size_t next) {
+    if (next != otherwise_.likeliest()) all_.back().otherwise = next;
+  }
+  std::vector<PieceOfEvidence> heaviest_first() {
+    std::stable_sort(all_.begin(), all_.end(),
+                     [](const PieceOfEvidence& a, const PieceOfEvidence& b) {
+                       return std::abs(a.evidence.log_odds) > std::abs(b.evidence.log_odds);
+                     });
     return std::move(all_);
   }
   const std::string& name(RuleId rule) const { return knowledge_.rules[rule].name; }
   const std::string& name(ComponentId component) const { return knowledge_.rules[component].name; }
 
+  const Otherwise& otherwise_;
   const Causes& causes_;
   const Diagnosis& diagnosis_;
   const Knowledge& knowledge_;
-  std::vector<Evidence> all_;
+  std::vector<PieceOfEvidence> all_;
 };
 
 }  // namespace
 
-std::vector<Evidence> evidence_for(std::size_t j, std::size_t i, const Examination& found,
-                                   const Knowledge& knowledge) {
-  Collector collector(found, knowledge);
+std::vector<PieceOfEvidence> evidence_for(std::size_t j, std::size_t i, const Otherwise& otherwise,
+                                          const Examination& found, const Knowledge& knowledge) {
+  Collector collector(otherwise, found, knowledge);
   return i == j ? collector.own(i) : collector.other(j, i);
 }
 

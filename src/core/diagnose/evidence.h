@@ -17,18 +17,25 @@
 // Symbols: diagnosis.h.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "diagnose/examination.h"
+#include "diagnose/otherwise.h"
 #include "knowledge/event.h"
 
 namespace culprit::diagnose {
 
 inline constexpr double kSurely = 6.9;  // 1,000 to 1
 
+struct PieceOfEvidence {
+  Evidence evidence;
+  // The node that would be the likeliest cause without it (otherwise.h); nothing: the same as with it.
+  std::optional<std::size_t> otherwise{};
+};
 // For suspect `j` of failure `i`, both nodes of found.causes(); the heaviest first. @pre j is i or one
-// of its causes
-std::vector<Evidence> evidence_for(std::size_t j, std::size_t i, const Examination& found,
-                                   const Knowledge& knowledge);
+// of its causes; `otherwise` is of i
+std::vector<PieceOfEvidence> evidence_for(std::size_t j, std::size_t i, const Otherwise& otherwise,
+                                          const Examination& found, const Knowledge& knowledge);
 
 }  // namespace culprit::diagnose

@@ -23,8 +23,15 @@ class EvidenceFor : public ::testing::Test {
   std::vector<Evidence> of(const char* suspect, const char* failure) {
     const Examination found(*scene_, scene_->states.active());
     const Causes& causes = found.causes();
-    return evidence_for(causes.index_of(scene_.rule(suspect)),
-                        causes.index_of(scene_.rule(failure)), found, *scene_);
+    const std::size_t i = causes.index_of(scene_.rule(failure));
+    const Otherwise otherwise(i, causes, found.diagnosis());
+    const std::size_t j = causes.index_of(scene_.rule(suspect));
+    std::vector<Evidence> all;
+    for (PieceOfEvidence& each : evidence_for(j, i, otherwise, found, *scene_)) {
+      if (each.otherwise) each.evidence.without = scene_->rules[causes[*each.otherwise].rule].name;
+      all.push_back(std::move(each.evidence));
+    }
+    return all;
   }
   std::vector<std::string> texts(const char* suspect, const char* failure) {
     std::vector<std::string> all;
@@ -65,11 +72,28 @@ TEST_F(EvidenceFor, ASupplierInTroubleNeedsNoRule) {
   scene_.process("b", ProcessState::kGone);
   const Examination found(*scene_, scene_->states.active());
   const std::size_t i = found.causes().index_of(scene_.rule("C"));
+  const Otherwise otherwise(i, found.causes(), found.diagnosis());
   std::vector<std::string> all;
   for_each(found.causes().causes(i), [&](std::size_t j) {
-    for (const Evidence& each : evidence_for(j, i, found, *scene_)) all.push_back(each.text);
+    for (const PieceOfEvidence& each : evidence_for(j, i, otherwise, found, *scene_))
+      all.push_back(each.evidence.text);
   });
   EXPECT_THAT(all, ElementsAre("b exited"));
+}
+
+TEST_F(EvidenceFor, NamesWhoWouldBeResponsibleWithoutIt) {
+  scene_.fail("A").fail("B");
+  EXPECT_EQ(of("A", "B").front().without, "B") << "nothing else is upstream";
+  scene_.process("b", ProcessState::kGone);
+  EXPECT_EQ(of("B", "B").front().without, "A") << "that b exited is why A is not";
+  EXPECT_EQ(of("A", "B").front().without, "") << "b is responsible with it and without it";
+}
+
+TEST_F(EvidenceFor, OfTwoCausesTheOtherOneIsLeft) {
+  scene_.fail("A").fail("B").fail("C");
+  scene_->couplings.set(scene_.rule("B"), scene_.rule("C"), {1, 9});
+  EXPECT_EQ(of("A", "C").front().without, "B");
+  EXPECT_EQ(of("B", "C").front().without, "");
 }
 
 TEST_F(EvidenceFor, WhatWasLearnedCounts) {

@@ -48,6 +48,8 @@ class Incidents {
 
   // As they were after the last step, in the order of comes_before().
   const std::vector<Incident>& open() const { return open_; }
+  // Those of the latest decision about the failure, the likeliest first; empty: none was made.
+  const std::vector<Suspect>& suspects_of(RuleId failure) const { return of(failure).suspects; }
   // Why culprit as a whole does nothing now.
   enum class Halt : std::uint8_t { kNone, kPaused, kDeaf };
   Course course_of(const Incident& incident, const Knowledge& knowledge, Halt halt) const;

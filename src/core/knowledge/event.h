@@ -71,6 +71,8 @@ struct Evidence {
   std::string text;             // "camera exited"
   std::optional<Duration> age;  // since when, if that is known
   double log_odds = 0;          // its weight: natural logarithm; below 0 it speaks against it
+  std::string
+      without{};  // the component that would be held responsible without it; empty: the same
 
   bool operator==(const Evidence&) const = default;
 };

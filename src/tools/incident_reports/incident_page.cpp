@@ -1,15 +1,15 @@
 #include "incident_reports/incident_page.h"
 
 #include <algorithm>
-#include <cmath>
-#include <ctime>
 #include <map>
 
 #include <fmt/core.h>
 
 #include "base/xml.h"
 #include "incident_reports/curve_plot.h"
+#include "incident_reports/evidence_part.h"
 #include "incident_reports/incident_words.h"
+#include "incident_reports/page_parts.h"
 #include "journal/json.h"
 
 namespace culprit::incident_reports {
@@ -23,56 +23,12 @@ body{background:var(--surface);color:var(--text);font:15px/1.5 system-ui,sans-se
 table{border-collapse:collapse;width:100%;margin:.4rem 0 1rem}td,th{text-align:left;vertical-align:top;padding:.2rem .8rem .2rem 0;border-bottom:1px solid var(--faint)}
 th{font-weight:600}time,td:first-child,th[scope=row]{font-variant-numeric:tabular-nums;white-space:nowrap}
 svg{display:block;width:100%;height:auto;background:var(--raised);border-radius:6px}text{fill:var(--text);font-size:12px}line{stroke:var(--faint)}
+.onset{width:40%}.onset line{stroke:var(--muted)}.for{fill:var(--error)}.against{fill:var(--ok)}
 .ERROR{fill:var(--error)}.WARNING{fill:var(--warning)}.NON_CRITICAL{fill:var(--note)}
 figure{margin:0 0 .9rem;break-inside:avoid}figcaption{margin-bottom:.15rem}.why,.note{color:var(--muted)}
 .curve{fill:none;stroke:var(--accent);stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}.limit{stroke:var(--warning);stroke-dasharray:5 4}
 .mark line{stroke-width:1.2}.detected line,.given-up line{stroke:var(--error)}.detected text,.given-up text{fill:var(--error)}
 .decided line{stroke:var(--note)}.decided text{fill:var(--note)}.no-help line{stroke:var(--warning)}.no-help text{fill:var(--warning)}.resolved line{stroke:var(--ok)}.resolved text{fill:var(--ok)})";
-
-std::string formatted(double clock, const char* format) {
-  const auto seconds = static_cast<std::time_t>(std::floor(clock));
-  std::tm parts{};
-  char text[64] = "?";
-  if (clock >= 0 && clock < 1e11 && localtime_r(&seconds, &parts) != nullptr)
-    std::strftime(text, sizeof text, format, &parts);
-  return text;
-}
-std::string on_calendar(double clock) { return formatted(clock, "%Y-%m-%d"); }
-// With milliseconds: within an incident a second is long.
-std::string on_clock(double clock) {
-  const double rounded = std::round(clock * 1000) / 1000;
-  const auto milliseconds = static_cast<int>(std::round(1000 * (rounded - std::floor(rounded))));
-  return formatted(rounded, "%H:%M:%S") + fmt::format(".{:03}", milliseconds % 1000);
-}
-// "+0100"; the middle is set apart: "UTC+01:00"
-std::string time_zone(double clock) {
-  std::string zone = formatted(clock, "%z");
-  if (zone.size() == 5) zone.insert(3, ":");
-  return "UTC" + zone;
-}
-
-std::string safe_text(const Json& json, const char* key) {
-  return xml_escaped(journal::text_of(json, key));
-}
-std::string row_of(const std::vector<std::string>& cells) {
-  std::string row;
-  for (const std::string& cell : cells) row += "<td>" + cell + "</td>";
-  return "<tr>" + row + "</tr>\n";
-}
-std::string fact(const char* name, const std::string& value) {
-  return std::string("<tr><th scope=\"row\">") + name + "</th><td>" + value + "</td></tr>\n";
-}
-std::string table_of(const std::vector<std::string>& heads, const std::string& rows) {
-  std::string head;
-  for (const std::string& each : heads) head += "<th scope=\"col\">" + each + "</th>";
-  return "<table><thead><tr>" + head + "</tr></thead><tbody>" + rows + "</tbody></table>\n";
-}
-const Json& list_in(const Json& json, const char* key) {
-  static const Json kNone = Json::array();
-  const auto found = json.find(key);
-  return found != json.end() && found->is_array() ? *found : kNone;
-}
-double clock_of(const Json& event) { return journal::number_of(event, "clock"); }
 
 // How it went for each rule: a bar while it failed, and a sign for each decision.
 class CourseOfRules {
@@ -215,11 +171,22 @@ std::string decisions(const std::vector<Json>& events) {
     out += "<h3><time>" + on_clock(clock_of(event)) + "</time> " + safe_text(event, "text") +
            "</h3>\n";
     if (!suspects.empty()) out += "<p>Possible causes: " + suspects + "</p>\n";
+    out += evidence_of(event);
     std::string rows;
     for (const Json& each : candidates) rows += candidate_row(event, each);
     out += table_of({"strategy", "cost", "why, or why not"}, rows);
   }
   return out.empty() ? "<p>No decisions.</p>\n" : out;
+}
+
+std::string requests(const std::vector<Request>& all) {
+  if (all.empty()) return "";
+  std::string rows;
+  for (const Request& each : all)
+    rows += row_of({on_clock(each.clock), xml_escaped(each.text),
+                    xml_escaped(each.answer.empty() ? "none was recorded" : each.answer),
+                    each.seconds ? lasting_text(*each.seconds) : ""});
+  return "<h2>Requests and answers</h2>\n" + table_of({"time", "request", "answer", "after"}, rows);
 }
 
 std::string comma_separated(const std::vector<std::string>& names) {
@@ -284,7 +251,8 @@ std::string incident_page(const PageContent& content) {
          title + "</title><style>" + std::string(kStyle) + "</style></head><body><main>\n<h1>" +
          title + "</h1>\n<table><tbody>" + facts + "</tbody></table>\n" +
          (content.whole ? incident_table(content) : "") + course_over_time(content) +
-         recorded(content) + "<h2>Decisions</h2>\n" + decisions(content.events) +
+         onsets_of(content.events, incident.began + incident.seconds) + recorded(content) +
+         "<h2>Decisions</h2>\n" + decisions(content.events) + requests(content.requests) +
          "<h2>Event log</h2>\n" + table_of({"time", "what", "in words"}, log) +
          fmt::format(
              "<p class=\"note\">Written by culprit, {} {}. Times are those of the clock of the "

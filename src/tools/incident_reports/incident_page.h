@@ -1,5 +1,5 @@
-// An incident as one HTML file without a script or other files: for a colleague without the robot or culprit. It shows the blamed component, the decisions with
-// their reasons, the events, and the robot's topics meanwhile.
+// An incident as one HTML file without a script or other files: for a colleague without the robot or culprit. It shows the blamed component, the evidence
+// on one time axis, the decisions with their reasons, the requests and their answers, the events, and the robot's topics meanwhile.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,7 @@
 
 #include "incident_reports/incident.h"
 #include "incident_reports/recorded_curves.h"
+#include "incident_reports/requests.h"
 
 namespace culprit::incident_reports {
 
@@ -27,6 +28,7 @@ struct PageContent {
   std::optional<WholeRecording> whole{};
   std::string robot;
   std::vector<Json> events;              // as GET /api/incidents/events tells them (docs/web.md)
+  std::vector<Request> requests{};       // in the order of their times
   std::vector<std::string> recordings;   // names of files; empty: nothing was recorded
   std::optional<RecordedCurves> curves;  // of one of them; nothing: `remarks` say why
   std::vector<std::string> remarks;      // sentences about the recording

@@ -62,7 +62,16 @@ PageContent page_of_rover() {
          {"strategy", "slow_down"},
          {"label", "decided"},
          {"text", "drive is held responsible"},
-         {"suspects", {{{"component", "drive"}, {"probability", 0.75}}}},
+         {"suspects",
+          {{{"component", "drive"},
+            {"probability", 0.75},
+            {"evidence",
+             {{{"source", "kernel"},
+               {"text", "drive is stopped"},
+               {"age_ns", 1'510'000'000},
+               {"log_odds", 2.9},
+               {"without", "lidar"}},
+              {{"source", "learned"}, {"text", "one stayed before"}, {"log_odds", -1.2}}}}}}},
          {"candidates",
           {{{"strategy", "slow_down"}, {"cost", 0.4}, {"excluded", nullptr}},
            {{"strategy", "stop"},
@@ -73,6 +82,8 @@ PageContent page_of_rover() {
          {"strategy", "slow_down"},
          {"label", "resolved"},
          {"text", "TooFast resolved"}});
+  content.requests = {{kDetectedAt + 0.02, "drive: set speed to 0.2", "done", 0.04},
+                      {kDetectedAt + 0.03, "lidar: restart"}};
   content.recordings = {"rover_20270115T080000.000Z_TooFast.mcap"};
   content.curves = RecordedCurves{
       nanoseconds_after(-4), nanoseconds_after(4), {speed_curve()}, {"Something is missing."}};
@@ -103,6 +114,25 @@ TEST_F(IncidentPage, ReportsTheBlameTheDecisionAndTheRecording) {
   EXPECT_THAT(html, HasSubstr("prefers-color-scheme:dark"));
 }
 
+TEST_F(IncidentPage, ShowsTheEvidenceOnOneTimeAxis) {
+  const std::string html = incident_page(page_of_rover());
+  for (const char* text : {"What began first", "09:59:58.500", "drive is stopped", "kernel", "+2.9",
+                           "1.5 s", "class=\"for\"", "one stayed before", "-1.2",
+                           "Without “drive is stopped”, <b>lidar</b> would be held responsible"})
+    EXPECT_THAT(html, HasSubstr(text));
+  EXPECT_LT(html.find("09:59:58.500"), html.find("10:00:00.000</td><td>TooFast"))
+      << "the earliest first";
+  PageContent content = page_of_rover();
+  content.events[1].erase("suspects");
+  EXPECT_THAT(incident_page(content), Not(HasSubstr("What began first")));
+}
+
+TEST_F(IncidentPage, TellsWhatWasAskedAndAnswered) {
+  const std::string html = incident_page(page_of_rover());
+  EXPECT_THAT(html, HasSubstr("<td>drive: set speed to 0.2</td><td>done</td><td>40 ms</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>lidar: restart</td><td>none was recorded</td>"));
+}
+
 TEST_F(IncidentPage, SaysWhyThereAreNoPlots) {
   PageContent content = page_of_rover();
   content.curves.reset();
@@ -121,9 +151,14 @@ TEST_F(IncidentPage, TakesNamesAndTextsForNothingElse) {
       content.incident.helped = content.recordings = content.remarks = {kEvil};
   for (Json& event : content.events) {
     for (const char* key : {"label", "text", "strategy", "rule", "criticality"}) event[key] = kEvil;
-    if (event.contains("suspects")) event["suspects"][0]["component"] = kEvil;
+    if (event.contains("suspects")) {
+      Json& suspect = event["suspects"][0];
+      suspect["component"] = kEvil;
+      for (const char* key : {"text", "source", "without"}) suspect["evidence"][0][key] = kEvil;
+    }
     if (event.contains("candidates")) event["candidates"][1]["excluded"]["text"] = kEvil;
   }
+  content.requests[0].text = content.requests[0].answer = kEvil;
   Curve& curve = content.curves->curves[0];
   curve.name = curve.about = curve.unit = kEvil;
   content.curves->remarks = {kEvil};
@@ -134,6 +169,8 @@ TEST_F(IncidentPage, TakesNamesAndTextsForNothingElse) {
     for (const char* key : {"clock", "candidates", "suspects", "type"}) event[key] = Json{{"a", 7}};
   }
   content.events.push_back(7);
+  content.events.push_back(
+      Json{{"suspects", Json::array({7, Json{{"evidence", Json::array({7, Json::object()})}}})}});
   content.events.push_back(
       Json{{"candidates", Json::array({7, nullptr, Json{{"excluded", "word"}}})}});
   EXPECT_THAT(incident_page(content), HasSubstr("</html>"));

@@ -110,6 +110,9 @@ Expected<std::optional<PageContent>> report_of(const journal::Reader& journal,
   auto told = events_of(journal, content.incident.first_row, content.incident.last_row);
   if (!told) return Error{told.error()};
   for (ToldEvent& each : *told) content.events.push_back(to_json(std::move(each)));
+  auto requests = requests_of(journal, content.incident.first_row, content.incident.last_row);
+  if (!requests) return Error{requests.error()};
+  content.requests = std::move(*requests);
   const auto session = session_at(journal, content.incident.first_row);
   if (!session) return Error{session.error()};
   std::optional<RuleSet> rules;

@@ -280,6 +280,34 @@ TEST_F(JournalIncidents, AreReportedByTheirIds) {
     EXPECT_FALSE(value_of(report_of(reader, other, folder / "recordings", kNoon))) << other;
 }
 
+TEST_F(JournalIncidents, TellWhatWasAskedAndAnswered) {
+  const auto asked = [&](double after, int command, const char* text) {
+    add(journal::kind::kIntent, after, {{"command", command}, {"text", text}});
+  };
+  const auto answered = [&](double after, int command, const char* outcome, const char* reason) {
+    add(journal::kind::kOutcome, after,
+        {{"command", command}, {"outcome", outcome}, {"reason", reason}});
+  };
+  session(0);
+  asked(5, 1, "camera: before the incident");
+  detected(10, "CameraDead");
+  answered(10.5, 1, "done", "");
+  asked(11, 2, "camera: deactivate");
+  asked(11.5, 3, "camera: activate");
+  answered(12, 2, "refused", "it is busy");
+  resolved(13, "CameraDead", "replace");
+  answered(14, 3, "done", "");
+  const auto reader = journal();
+  const std::string id = value_of(incidents_of(reader, kNoon)).incidents.at(0).id;
+  const auto content = value_of(report_of(reader, id, folder / "none", kNoon + 100));
+  ASSERT_TRUE(content);
+  ASSERT_EQ(content->requests.size(), 2u);
+  EXPECT_EQ(content->requests[0].text, "camera: deactivate");
+  EXPECT_EQ(content->requests[0].answer, "refused, it is busy");
+  EXPECT_NEAR(content->requests[0].seconds.value_or(0), 1, 1e-3);
+  EXPECT_EQ(content->requests[1].answer, "done") << "it came after the incident";
+}
+
 // An incident that is not over has lasted as long as the journal goes, not until a reader looks a week later.
 TEST_F(JournalIncidents, ThatAreNotOverHaveLastedAsLongAsTheJournalTells) {
   session(0);

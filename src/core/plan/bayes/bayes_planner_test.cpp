@@ -431,6 +431,7 @@ TEST(BayesPlanner, SaysTheSuspectAndItsValue) {
   EXPECT_EQ(suspects[0].failure, scene.rule("A"));
   EXPECT_NEAR(suspects[0].probability + suspects[1].probability, 1, 1e-12);
   EXPECT_GT(suspects[0].probability, 0.9);
+  EXPECT_EQ(suspects[0].evidence[0].without, "b") << "if A did not fire";
   EXPECT_GT(scene.candidate("A.restart").value, 4) << "an ERROR, and a share of another";
   EXPECT_DOUBLE_EQ(scene.candidate("A.restart").resolves, 0.5);
 }

@@ -186,8 +186,17 @@ std::vector<Suspect> LikelyCauses::suspects(std::size_t failure) const {
                     });
   all.resize(shown);
   std::vector<Suspect> suspects;
+  const Otherwise otherwise(failure, causes_, diagnosis_);
+  const ComponentId responsible = all.front().first.component;
   for (auto& [suspect, node] : all) {
-    suspect.evidence = evidence_for(node, failure, found_, knowledge_);
+    for (PieceOfEvidence& piece : evidence_for(node, failure, otherwise, found_, knowledge_)) {
+      if (piece.otherwise) {
+        const ComponentId next = *piece.otherwise == failure ? likeliest_component(rule)
+                                                             : component_of(*piece.otherwise);
+        if (next != responsible) piece.evidence.without = knowledge_.rules[next].name;
+      }
+      suspect.evidence.push_back(std::move(piece.evidence));
+    }
     suspects.push_back(std::move(suspect));
   }
   return suspects;

@@ -1,27 +1,19 @@
-#include "cli/rule_graph.h"
+#include "rule_graph/rule_graph.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <variant>
 
 #include <fmt/core.h>
 
-#include "cli/diagnostic_report.h"
-#include "json/json.h"
+#include "diagnose/touched.h"
 #include "knowledge/describe.h"
 #include "language/occurrences.h"
 #include "language/parser.h"
 
-namespace culprit::cli {
+namespace culprit::rule_graph {
 namespace {
-
-using GraphJson = Json;
-
-RuleGraph::Place place_of(Span span, const Source& source) {
-  const auto written = source.origin(span).place;
-  const Source& file = source.file(written.file);
-  return {file.name(), file.position(written.span.begin)};
-}
 
 // Where each component is declared, or else named first.
 std::map<std::string, Span> spans_of_components(const Source& source) {
@@ -81,7 +73,38 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
   return all;
 }
 
-GraphJson with_place(GraphJson entry, const RuleGraph::Place& place) {
+// By producer.
+using Consumers = std::vector<std::vector<ComponentId>>;
+Consumers consumers_in(const RuleSet& rules) {
+  Consumers consumers(rules.components.size());
+  for (const Dependency& each : rules.dependencies)
+    consumers[each.producer.index].push_back(each.consumer);
+  return consumers;
+}
+
+std::vector<ComponentId> reached_by(RuleId rule, const Consumers& consumers,
+                                    const Knowledge& knowledge) {
+  std::vector<ComponentId> path = diagnose::spreads_from(rule, knowledge);
+  const std::size_t own = path.size();
+  std::vector<bool> seen(consumers.size());
+  for (const ComponentId c : path) seen[c.index] = true;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    for (const ComponentId next : consumers[path[i].index]) {
+      if (!seen[next.index]) path.push_back(next);
+      seen[next.index] = true;
+    }
+  }
+  path.erase(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(own));
+  std::sort(path.begin(), path.end());
+  return path;
+}
+
+Json with_mistake(Json entry, const std::optional<Severity>& mistake) {
+  if (mistake) entry["mistake"] = *mistake == Severity::kError ? "error" : "warning";
+  return entry;
+}
+
+Json with_place(Json entry, const RuleGraph::Place& place) {
   entry["file"] = place.file;
   entry["line"] = place.at.line;
   entry["column"] = place.at.column;
@@ -97,6 +120,12 @@ std::string listed_components(const std::vector<ComponentId>& components, const 
 
 }  // namespace
 
+RuleGraph::Place place_of(Span span, const Source& source) {
+  const auto written = source.origin(span).place;
+  const Source& file = source.file(written.file);
+  return {file.name(), file.position(written.span.begin)};
+}
+
 RuleGraph graph_of(const RuleSet& rules, const Source& source) {
   RuleGraph graph;
   const std::map<std::string, Span> spans = spans_of_components(source);
@@ -107,9 +136,13 @@ RuleGraph graph_of(const RuleSet& rules, const Source& source) {
     graph.components.push_back(std::move(component));
   }
   graph.dependencies = rules.dependencies;
-  for (const culprit::Rule& each : rules.rules) {
+  const Knowledge knowledge(rules);
+  const Consumers consumers = consumers_in(rules);
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    const culprit::Rule& each = rules.rules[r];
     graph.rules.push_back({each.name, each.policies.criticality, read_by(each, rules),
-                           each.components, place_of(each.declaration.span, source)});
+                           each.components, reached_by(RuleId(r), consumers, knowledge),
+                           place_of(each.declaration.span, source)});
   }
   return graph;
 }
@@ -129,37 +162,41 @@ std::string as_text(const RuleGraph& graph) {
     if (!rule.reads.empty()) text += "  looks at " + listed_components(rule.reads, graph) + "\n";
     text += rule.adapts.empty() ? "  adapts nothing\n"
                                 : "  adapts " + listed_components(rule.adapts, graph) + "\n";
+    if (!rule.spreads.empty())
+      text += "  may spread to " + listed_components(rule.spreads, graph) + "\n";
   }
   return text;
 }
 
-std::string as_json(const RuleGraph& graph) {
-  GraphJson components = GraphJson::array();
+Json as_json(const RuleGraph& graph) {
+  Json components = Json::array();
   for (const RuleGraph::Component& each : graph.components) {
-    GraphJson entry{{"name", each.name}, {"node", each.node}, {"declared", each.is_declared}};
+    Json entry = with_mistake(
+        {{"name", each.name}, {"node", each.node}, {"declared", each.is_declared}}, each.mistake);
     components.push_back(each.place ? with_place(std::move(entry), *each.place) : entry);
   }
   const auto name_of = [&](ComponentId id) { return graph.components[id.index].name; };
-  GraphJson dependencies = GraphJson::array();
+  Json dependencies = Json::array();
   for (const Dependency& each : graph.dependencies)
     dependencies.push_back(
         {{"consumer", name_of(each.consumer)}, {"producer", name_of(each.producer)}});
   const auto names = [&](const std::vector<ComponentId>& all) {
-    GraphJson list = GraphJson::array();
+    Json list = Json::array();
     for (const ComponentId id : all) list.push_back(name_of(id));
     return list;
   };
-  GraphJson rules = GraphJson::array();
+  Json rules = Json::array();
   for (const RuleGraph::Rule& each : graph.rules)
-    rules.push_back(with_place({{"name", each.name},
-                                {"criticality", to_string(each.criticality)},
-                                {"reads", names(each.reads)},
-                                {"adapts", names(each.adapts)}},
-                               each.place));
-  return to_text({{"components", std::move(components)},
-                  {"dependencies", std::move(dependencies)},
-                  {"rules", std::move(rules)}}) +
-         "\n";
+    rules.push_back(with_mistake(with_place({{"name", each.name},
+                                             {"criticality", to_string(each.criticality)},
+                                             {"reads", names(each.reads)},
+                                             {"adapts", names(each.adapts)},
+                                             {"spreads", names(each.spreads)}},
+                                            each.place),
+                                 each.mistake));
+  return {{"components", std::move(components)},
+          {"dependencies", std::move(dependencies)},
+          {"rules", std::move(rules)}};
 }
 
 std::string in_dot(const std::string& text) {
@@ -193,4 +230,4 @@ std::string as_dot(const RuleGraph& graph) {
   return text + "}\n";
 }
 
-}  // namespace culprit::cli
+}  // namespace culprit::rule_graph

@@ -1,0 +1,49 @@
+// culprit explain: what a decision of a journal hinges on.
+#include "cli/decision_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/test_expected.h"
+#include "base/test_folder.h"
+#include "journal/writer.h"
+
+namespace culprit::cli {
+namespace {
+
+using culprit::test::TestFolder;
+using culprit::test::value_of;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::int64_t kReportedAt = 1'800'000'000'000'000'000;  // ns since 1970
+
+std::string explained(const std::string& evidence) {
+  const TestFolder folder;
+  journal::Batch rows;
+  rows.entries.push_back(
+      {0, kReportedAt, std::string(journal::kind::kEvent),
+       R"({"type":"strategy_chosen","rule":"R","strategy":"s","text":"camera is responsible","time":1,)"
+       R"("suspects":[{"component":"camera","failure":"R","probability":0.9,"evidence":[)" +
+           evidence + R"(]}],"candidates":[{"strategy":"s","cost":0.5}]})"});
+  auto writer = value_of(journal::Writer::open(folder / "a.journal", {}));
+  const auto done = writer.append(rows, kReportedAt, journal::Durability::kProcessEnd);
+  EXPECT_TRUE(done) << done.error();
+  return value_of(explain_decision(value_of(journal::Reader::open(folder / "a.journal")), 0));
+}
+
+TEST(DecisionReport, SaysWhatWouldChangeIt) {
+  const std::string out =
+      explained(R"({"source":"kernel","text":"camera exited","log_odds":2.9,"without":"fusion"})");
+  EXPECT_THAT(out, HasSubstr("\nWhat would change this\n"
+                             "  without \"camera exited\", fusion would be responsible\n"));
+}
+
+TEST(DecisionReport, SaysNothingOfItWhereNothingWould) {
+  const std::string out = explained(R"({"source":"kernel","text":"camera exited","log_odds":2.9})");
+  EXPECT_THAT(out, HasSubstr("camera exited (kernel, +2.9)"));
+  EXPECT_THAT(out, Not(HasSubstr("What would change")));
+}
+
+}  // namespace
+}  // namespace culprit::cli
