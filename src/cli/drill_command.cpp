@@ -307,6 +307,7 @@ Expected<void> inject_all(const DrillOptions& options, const RuleSet& rules,
     if (auto added = record.add(*trial); !added) return Error{added.error()};
     say(remarks, "[{}/{}] {}; about {} left\n", number, plan.steps.size(),
         escape_controls(drill::line_of(*trial)), in_words(left));
+    if (const std::string why = session.why_to_end(); !why.empty()) return Error{why};
   }
   return {};
 }

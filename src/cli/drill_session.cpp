@@ -131,16 +131,17 @@ DrillSession::~DrillSession() {
     say_(forgotten.error());
 }
 
-std::string DrillSession::why_to_end() const {
+std::string DrillSession::why_to_end() {
   if (stop_) return "interrupted";
+  if (!aborted_.empty()) return aborted_;
   // A drill that stood still heard nothing.
   const bool may_hear = live_now() >= later(stood_still_, kHears);
   if (!manager_->is_running() || (may_hear && !manager_->is_answering()))
     return "the culprit of this drill does not answer";
   const RobotView view = manager_->view();
   for (const Condition& each : options_.aborts)
-    if (view.trigger(each.rule).value_or(false)) return "ABORT " + each.text + " is true";
-  return "";
+    if (view.trigger(each.rule).value_or(false)) aborted_ = "ABORT " + each.text + " is true";
+  return aborted_;
 }
 
 void DrillSession::next_look() {
@@ -230,7 +231,7 @@ void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected)
     for (const std::string& each : view.silent(usual_))
       trial.silent.try_emplace(each, drill_clock());
     trial.trouble = why_to_end();
-    if (trial.trouble.empty()) trial.trouble = manager_->why_it_does_not_act();
+    if (trial.trouble.empty()) trial.trouble = aborted_ = manager_->why_it_does_not_act();
     if (!trial.trouble.empty()) return undo_now();
     const bool noticed = is_noticed(manager_->events_since(trial.injected));
     // The guard lets a stopped process go on by itself. Others stay broken for half of the time that culprit has.

@@ -48,6 +48,10 @@ class DrillSession {
   // full, an ABORT condition is true or unknown, culprit is paused, or `stop`. The fault is undone then.
   Expected<drill::Trial> run(const drill::Step& step);
 
+  // Why no further fault may be injected; empty: go on. An ABORT condition that was true once ends the drill, though it is
+  // false again when the fault is undone.
+  std::string why_to_end();
+
   // As it was before the first fault.
   const drill::HealthyRobot& healthy() const { return usual_; }
   // Watches for so long and injects nothing. False: stopped.
@@ -64,7 +68,6 @@ class DrillSession {
   // On the disk, with the culprit that runs.
   Expected<void> note(std::vector<drill::Injected> injected) const;
   Expected<void> may_inject() const;
-  std::string why_to_end() const;  // empty: go on
   // Sleeps until the next look. Notes if the drill itself stood still meanwhile.
   void next_look();
   Expected<std::vector<drill::Injected>> prepare(const std::vector<drill::Fault>& faults);
@@ -81,6 +84,7 @@ class DrillSession {
   std::unique_ptr<DrillInjector> injector_;
   std::optional<drill::RobotView> healthy_;
   drill::HealthyRobot usual_;
+  std::string aborted_;          // why: an ABORT condition or a pause; empty: it was not
   std::optional<Time> calm_;     // since when the robot is well
   Time stood_still_ = kLongAgo;  // when the drill itself had not run for a second
 };
