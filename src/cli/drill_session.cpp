@@ -108,14 +108,20 @@ Expected<void> DrillSession::note(std::vector<Injected> injected) const {
 }
 
 DrillSession::~DrillSession() {
-  if (!manager_) return;
+  if (!manager_ || (options_.heals && !heal())) return;
+  manager_.reset();
+  if (auto forgotten = drill::forget_injected(options_.injected); !forgotten)
+    say_(forgotten.error());
+}
+
+bool DrillSession::heal() {
   if (!manager_->is_running()) {
     static const std::atomic<bool> kNeverStopped = false;
     say_("the culprit of this drill exited; another one heals the robot");
     auto next = DrillManager::start(options_.manager, options_.log, kNeverStopped);
     if (!next) {
       say_(next.error() + "; restore the healthy robot");
-      return;
+      return false;
     }
     manager_ = std::move(*next);
     calm_.reset();
@@ -124,11 +130,9 @@ DrillSession::~DrillSession() {
     say_(well.error() + "; culprit goes on and heals it: process " +
          std::to_string(manager_->process().pid));
     manager_->leave();
-    return;
+    return false;
   }
-  manager_.reset();
-  if (auto forgotten = drill::forget_injected(options_.injected); !forgotten)
-    say_(forgotten.error());
+  return true;
 }
 
 std::string DrillSession::why_to_end() {

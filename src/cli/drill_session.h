@@ -32,6 +32,7 @@ class DrillSession {
     std::vector<Condition> aborts;      // each rule is true with its condition
     Duration hang = std::chrono::seconds(3);
     Duration patience = std::chrono::seconds(60);  // for the robot to be well
+    bool heals = true;                             // false: the culprit is on a dry run
   };
   using Say = std::function<void(const std::string& line)>;
 
@@ -40,8 +41,8 @@ class DrillSession {
   static Expected<std::unique_ptr<DrillSession>> begin(Options options, Say say,
                                                        const std::atomic<bool>& stop);
 
-  // Waits until the robot is well and ends the culprit. If the robot does not get well, that culprit goes on. If it exited
-  // meanwhile, another one heals first.
+  // Ends the culprit; one that heals, once the robot is well. If the robot does not get well, that culprit goes on. If it
+  // exited meanwhile, another one heals first.
   ~DrillSession();
 
   // One fault. Errors end the drill: the robot is not well before or after it, an interlock does not hold, the disk is
@@ -62,6 +63,8 @@ class DrillSession {
       : options_(std::move(options)), say_(std::move(say)), stop_(stop) {}
 
   Expected<void> undo_what_is_left();
+  // Waits until the robot is well. False: the culprit goes on, or no other one can be started.
+  bool heal();
   // Errors: what is wrong; with kWellOrTold also why the drill is to end.
   enum class Until : std::uint8_t { kWell, kWellOrTold };
   Expected<void> wait_until_well(Until until);
