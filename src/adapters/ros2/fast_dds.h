@@ -217,9 +217,8 @@ inline rtps::Locator_t locator(const std::string& ip, std::uint32_t port) {
 }
 
 // How often a reader repeats its request for a writer's history, and a writer its heartbeat, until the other end answers, in
-// nanoseconds; and the defaults of Fast DDS. Each repetition costs a receiver as much as an answer does. At 10 and 20 ms, the
-// repetitions of a robot of seventeen processes filled the socket of a node that had too little processor time, and the
-// answers never came through.
+// nanoseconds; and the defaults of Fast DDS. Each repetition costs a receiver as much as an answer does. At 10 and 20 ms, those
+// of a robot of seventeen processes filled the socket of a node on a busy computer, and the answers never came through.
 constexpr std::uint32_t kRequestsAgain = 70'000'000;      // default
 constexpr std::uint32_t kHeartbeatAgain = 100'000'000;    // default: 3 s; a late joiner may wait
 constexpr std::uint32_t kPatientHeartbeat = 250'000'000;  // not before acknowledgements were read
