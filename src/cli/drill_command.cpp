@@ -283,6 +283,7 @@ Expected<std::unique_ptr<DrillSession>> begin_session(const DrillOptions& option
   session.aborts = all->aborts;
   session.hang = from_seconds(options.hang_seconds);
   session.patience = from_seconds(options.patience_seconds);
+  session.heals = options.monitor_seconds <= 0;
   return DrillSession::begin(
       std::move(session),
       [&options](const std::string& line) {
@@ -307,6 +308,7 @@ Expected<void> inject_all(const DrillOptions& options, const RuleSet& rules,
     if (auto added = record.add(*trial); !added) return Error{added.error()};
     say(remarks, "[{}/{}] {}; about {} left\n", number, plan.steps.size(),
         escape_controls(drill::line_of(*trial)), in_words(left));
+    if (const std::string why = session.why_to_end(); !why.empty()) return Error{why};
   }
   return {};
 }
@@ -405,8 +407,8 @@ void add_drill(CLI::App& app, int& exit_code) {
   command->add_option("--abort", options->abort,
                       "A condition of the rule language that ends the drill at once");
   command->add_flag("--yes", options->is_agreed, "Agree to the plan without being asked");
-  command->add_flag("--launch", options->launches,
-                    "Start components that are missing, by their LAUNCH commands");
+  CLI::Option* const launch = command->add_flag(
+      "--launch", options->launches, "Start components that are missing, by their LAUNCH commands");
   command
       ->add_option("--record", options->record,
                    "Folder of the record; an unfinished drill of the same plan is resumed")
@@ -423,7 +425,8 @@ void add_drill(CLI::App& app, int& exit_code) {
       ->type_name("FOLDER");
   add_seconds(*command, "--monitor", options->monitor_seconds,
               "Inject nothing: watch the healthy robot and propose thresholds", 1, 7 * 86400)
-      ->default_str("");
+      ->default_str("")
+      ->excludes(launch);  // it is a dry run
   command->callback([options, &exit_code] { exit_code = run_drill(*options); });
 }
 

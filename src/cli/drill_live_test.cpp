@@ -132,6 +132,42 @@ TEST_F(Drill, AnAbortConditionThatIsTrueOrUnknownKeepsItFromInjecting) {
   }
 }
 
+TEST_F(Drill, AnAbortConditionThatBecomesTrueUndoesTheFaultAndEndsTheDrill) {
+  TestProgram program(world, drill({"--only", "depth", "--kinds", "deactivate", "--times", "3",
+                                    "--abort", "lifecycle(depth) != \"active\""}));
+  EXPECT_EQ(program.wait(90s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("[1/3] deactivate depth: proves nothing, ABORT "));
+  EXPECT_THAT(program.output(), HasSubstr("the drill ends: ABORT lifecycle(depth) != "));
+  EXPECT_THAT(program.output(), testing::Not(HasSubstr("[2/3]")));
+  EXPECT_FALSE(has_record_of_injected());
+  std::filesystem::remove_all(world.folder() / "record");
+  TestProgram next(world, drill({"--only", "depth", "--kinds", "deactivate", "--hang", "0.5"}));
+  EXPECT_EQ(next.wait(90s), 0) << next.output();
+  EXPECT_THAT(next.output(), HasSubstr("deactivate depth: not noticed, undone after "))
+      << "it was active again";
+}
+
+TEST_F(Drill, ThatOnlyWatchesProposesThresholds) {
+  std::ofstream(rules, std::ios::app) << "RULE CameraSilent\n  POLICIES WARNING REPORT\n"
+                                         "  TRIGGER age(/managed_subsystem/rgb_camera) > 900ms\n";
+  TestProgram camera(world, {"sunset-node", "camera"});
+  TestProgram depth(world, {"sunset-node", "depth"});
+  TestProgram program(world, {"culprit", "drill", rules, "--monitor", "4", "--state-dir", state()});
+  EXPECT_EQ(program.wait(90s), 0) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("CameraSilent  age(/managed_subsystem/rgb_camera) > "));
+  EXPECT_THAT(program.output(), testing::Not(HasSubstr("injects")));
+  EXPECT_THAT(managers(), testing::IsEmpty());
+}
+
+TEST_F(Drill, ThatOnlyWatchesLeavesNoCulpritOnARobotThatIsIll) {
+  TestProgram program(world, {"culprit", "drill", rules, "--monitor", "4", "--patience", "5",
+                              "--state-dir", state()});
+  EXPECT_EQ(program.wait(60s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("the robot is not healthy: "));
+  EXPECT_THAT(managers(), testing::IsEmpty()) << "on a dry run it would heal nothing";
+  EXPECT_FALSE(has_record_of_injected());
+}
+
 TEST_F(Drill, ARobotThatIsIllAlreadyIsNotBroken) {
   std::ofstream(rules, std::ios::app)
       << "RULE Ill\n  POLICIES WARNING REPORT\n  TRIGGER alive(camera)\n";

@@ -108,14 +108,20 @@ Expected<void> DrillSession::note(std::vector<Injected> injected) const {
 }
 
 DrillSession::~DrillSession() {
-  if (!manager_) return;
+  if (!manager_ || (options_.heals && !heal())) return;
+  manager_.reset();
+  if (auto forgotten = drill::forget_injected(options_.injected); !forgotten)
+    say_(forgotten.error());
+}
+
+bool DrillSession::heal() {
   if (!manager_->is_running()) {
     static const std::atomic<bool> kNeverStopped = false;
     say_("the culprit of this drill exited; another one heals the robot");
     auto next = DrillManager::start(options_.manager, options_.log, kNeverStopped);
     if (!next) {
       say_(next.error() + "; restore the healthy robot");
-      return;
+      return false;
     }
     manager_ = std::move(*next);
     calm_.reset();
@@ -124,23 +130,22 @@ DrillSession::~DrillSession() {
     say_(well.error() + "; culprit goes on and heals it: process " +
          std::to_string(manager_->process().pid));
     manager_->leave();
-    return;
+    return false;
   }
-  manager_.reset();
-  if (auto forgotten = drill::forget_injected(options_.injected); !forgotten)
-    say_(forgotten.error());
+  return true;
 }
 
-std::string DrillSession::why_to_end() const {
+std::string DrillSession::why_to_end() {
   if (stop_) return "interrupted";
+  if (!aborted_.empty()) return aborted_;
   // A drill that stood still heard nothing.
   const bool may_hear = live_now() >= later(stood_still_, kHears);
   if (!manager_->is_running() || (may_hear && !manager_->is_answering()))
     return "the culprit of this drill does not answer";
   const RobotView view = manager_->view();
   for (const Condition& each : options_.aborts)
-    if (view.trigger(each.rule).value_or(false)) return "ABORT " + each.text + " is true";
-  return "";
+    if (view.trigger(each.rule).value_or(false)) aborted_ = "ABORT " + each.text + " is true";
+  return aborted_;
 }
 
 void DrillSession::next_look() {
@@ -230,7 +235,7 @@ void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected)
     for (const std::string& each : view.silent(usual_))
       trial.silent.try_emplace(each, drill_clock());
     trial.trouble = why_to_end();
-    if (trial.trouble.empty()) trial.trouble = manager_->why_it_does_not_act();
+    if (trial.trouble.empty()) trial.trouble = aborted_ = manager_->why_it_does_not_act();
     if (!trial.trouble.empty()) return undo_now();
     const bool noticed = is_noticed(manager_->events_since(trial.injected));
     // The guard lets a stopped process go on by itself. Others stay broken for half of the time that culprit has.

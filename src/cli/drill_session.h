@@ -32,6 +32,7 @@ class DrillSession {
     std::vector<Condition> aborts;      // each rule is true with its condition
     Duration hang = std::chrono::seconds(3);
     Duration patience = std::chrono::seconds(60);  // for the robot to be well
+    bool heals = true;                             // false: the culprit is on a dry run
   };
   using Say = std::function<void(const std::string& line)>;
 
@@ -40,13 +41,17 @@ class DrillSession {
   static Expected<std::unique_ptr<DrillSession>> begin(Options options, Say say,
                                                        const std::atomic<bool>& stop);
 
-  // Waits until the robot is well and ends the culprit. If the robot does not get well, that culprit goes on. If it exited
-  // meanwhile, another one heals first.
+  // Ends the culprit; one that heals, once the robot is well. If the robot does not get well, that culprit goes on. If it
+  // exited meanwhile, another one heals first.
   ~DrillSession();
 
   // One fault. Errors end the drill: the robot is not well before or after it, an interlock does not hold, the disk is
   // full, an ABORT condition is true or unknown, culprit is paused, or `stop`. The fault is undone then.
   Expected<drill::Trial> run(const drill::Step& step);
+
+  // Why no further fault may be injected; empty: go on. An ABORT condition that was true once ends the drill, though it is
+  // false again when the fault is undone.
+  std::string why_to_end();
 
   // As it was before the first fault.
   const drill::HealthyRobot& healthy() const { return usual_; }
@@ -58,13 +63,14 @@ class DrillSession {
       : options_(std::move(options)), say_(std::move(say)), stop_(stop) {}
 
   Expected<void> undo_what_is_left();
+  // Waits until the robot is well. False: the culprit goes on, or no other one can be started.
+  bool heal();
   // Errors: what is wrong; with kWellOrTold also why the drill is to end.
   enum class Until : std::uint8_t { kWell, kWellOrTold };
   Expected<void> wait_until_well(Until until);
   // On the disk, with the culprit that runs.
   Expected<void> note(std::vector<drill::Injected> injected) const;
   Expected<void> may_inject() const;
-  std::string why_to_end() const;  // empty: go on
   // Sleeps until the next look. Notes if the drill itself stood still meanwhile.
   void next_look();
   Expected<std::vector<drill::Injected>> prepare(const std::vector<drill::Fault>& faults);
@@ -81,6 +87,7 @@ class DrillSession {
   std::unique_ptr<DrillInjector> injector_;
   std::optional<drill::RobotView> healthy_;
   drill::HealthyRobot usual_;
+  std::string aborted_;          // why: an ABORT condition or a pause; empty: it was not
   std::optional<Time> calm_;     // since when the robot is well
   Time stood_still_ = kLongAgo;  // when the drill itself had not run for a second
 };

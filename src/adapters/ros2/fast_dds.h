@@ -216,14 +216,20 @@ inline rtps::Locator_t locator(const std::string& ip, std::uint32_t port) {
   return out;
 }
 
+// How often a reader repeats its request for a writer's history, and a writer its heartbeat, until the other end answers, in
+// nanoseconds; and the defaults of Fast DDS. Each repetition costs a receiver as much as an answer does. At 10 and 20 ms, those
+// of a robot of seventeen processes filled the socket of a node on a busy computer, and the answers never came through.
+constexpr std::uint32_t kRequestsAgain = 70'000'000;      // default
+constexpr std::uint32_t kHeartbeatAgain = 100'000'000;    // default: 3 s; a late joiner may wait
+constexpr std::uint32_t kPatientHeartbeat = 250'000'000;  // not before acknowledgements were read
+
 // `port`: where it receives, at all addresses of this machine; 0: where its participant does.
 inline dds::DataReaderQos reader_qos(const Qos& qos, const std::string& user_data,
                                      std::uint16_t port) {
   dds::DataReaderQos out;
   apply(out, qos, user_data);
   if (port != 0) out.endpoint().unicast_locator_list.push_back(locator("0.0.0.0", port));
-  // How often a reader that has not received a writer's history asks for it; 70 ms by default.
-  out.reliable_reader_qos().times.initialAcknackDelay = {0, 10'000'000};
+  out.reliable_reader_qos().times.initialAcknackDelay = {0, kRequestsAgain};
   return out;
 }
 
@@ -232,14 +238,9 @@ inline dds::DataWriterQos writer_qos(const Qos& qos, const std::string& user_dat
   dds::DataWriterQos out;
   apply(out, qos, user_data);
   out.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
-  // 3 s by default; a late joiner that missed the first heartbeat waits that long for transient
-  // local samples.
-  out.reliable_writer_qos().times.heartbeatPeriod = {0, 20'000'000};
-  if (port != 0) {
-    out.endpoint().unicast_locator_list.push_back(locator("0.0.0.0", port));
-    // Not before acknowledgements were read.
-    out.reliable_writer_qos().times.heartbeatPeriod = {0, 250'000'000};
-  }
+  out.reliable_writer_qos().times.heartbeatPeriod = {
+      0, port == 0 ? kHeartbeatAgain : kPatientHeartbeat};
+  if (port != 0) out.endpoint().unicast_locator_list.push_back(locator("0.0.0.0", port));
   if (qos.liveliness_lease != kInfinite)
     out.liveliness().announcement_period = to_duration(qos.liveliness_lease * 2 / 3);
   return out;

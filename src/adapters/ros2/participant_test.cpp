@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "base/live_clock.h"
+#include "ros2/fast_dds.h"
 #include "ros2/live_test.h"
 #include "ros2/type_description.h"
 
@@ -267,6 +268,15 @@ TEST(Participant, TransientLocalSamplesReachLateReaders) {
       {"t", "T", qos::kDiscoveryInfoReader, PayloadUse::kWhole, "", {}}, into(received));
   ASSERT_TRUE(reader);
   EXPECT_TRUE(received.wait_for_count(1));
+}
+
+// A starting robot has hundreds of readers and writers that repeat themselves at once.
+TEST(Participant, ItsEndpointsRepeatThemselvesAtMostFifteenTimesASecond) {
+  const Qos qos;
+  const auto reader = fast_dds::reader_qos(qos, "", 0).reliable_reader_qos().times;
+  EXPECT_GE(reader.initialAcknackDelay.to_ns(), 1'000'000'000 / 15);
+  const auto writer = fast_dds::writer_qos(qos, "").reliable_writer_qos().times;
+  EXPECT_GE(writer.heartbeatPeriod.to_ns(), 1'000'000'000 / 15);
 }
 
 TEST(Participant, MatchesAreToldAndLost) {
