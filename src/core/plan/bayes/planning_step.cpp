@@ -398,8 +398,7 @@ std::vector<WeighedCandidate*> PlanningStep::weigh_together(
   return together;
 }
 
-// Parts of the robot that are not connected do not wait for each other's repairs: each is weighed
-// alone. `strategies` are those of the sides; side_by_side() says the rest.
+// Parts of the robot that are not connected do not wait for each other's repairs: each is weighed alone. `strategies` are those of the sides; side_by_side() says the rest.
 std::vector<std::size_t> PlanningStep::side_by_side_in_parts(
     std::span<const Side> sides, std::span<const StrategyId> strategies) const {
   if (sides.size() < 2) return side_by_side(sides);
