@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <numeric>
 #include <tuple>
 
 #include "diagnose/questions.h"
 #include "plan/also_ended.h"
-#include "plan/bayes/connected_parts.h"
 #include "plan/ties.h"
 
 namespace culprit::plan {
@@ -282,7 +280,6 @@ void PlanningStep::ask_again() {
 void PlanningStep::choose(const WeighedCandidate& weighed) {
   has_choice_[weighed.failure] = true;
   sides_.push_back({tries_[weighed.failure], {weighed.place}});
-  sides_begin_with_.push_back(weighed.candidate.strategy);
   using enum Exclusions::Disturbance;
   exclusions_.add(causes_[weighed.failure].rule, weighed.affected,
                   weighed.only_revives ? kNone : kFromUpstream);
@@ -373,7 +370,6 @@ std::vector<WeighedCandidate*> PlanningStep::weigh_together(
     const std::vector<WeighedCandidate*>& open,
     const std::vector<WeighedCandidate*>& chosen) const {
   std::vector<Side> sides = sides_;
-  std::vector<StrategyId> strategies = sides_begin_with_;
   std::vector<std::vector<WeighedCandidate*>> firsts;
   for (WeighedCandidate* usual : chosen) {
     auto& all = firsts.emplace_back(1, usual);
@@ -383,11 +379,10 @@ std::vector<WeighedCandidate*> PlanningStep::weigh_together(
                    return other != usual && other->failure == usual->failure &&
                           knowledge_.rules[other->candidate.strategy].components == components;
                  });
-    strategies.push_back(usual->candidate.strategy);
     Side& side = sides.emplace_back(Side{tries_[usual->failure], {}});
     for (const WeighedCandidate* weighed : all) side.firsts.push_back(weighed->place);
   }
-  const std::vector<std::size_t> begins = side_by_side_in_parts(sides, strategies);
+  const std::vector<std::size_t> begins = side_by_side(sides);
   std::vector<WeighedCandidate*> together;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::size_t place = begins[sides_.size() + i];
@@ -396,25 +391,6 @@ std::vector<WeighedCandidate*> PlanningStep::weigh_together(
                       [&](const WeighedCandidate* weighed) { return weighed->place == place; }));
   }
   return together;
-}
-
-// Parts of the robot that are not connected do not wait for each other's repairs: each is weighed alone. `strategies` are those of the sides; side_by_side() says the rest.
-std::vector<std::size_t> PlanningStep::side_by_side_in_parts(
-    std::span<const Side> sides, std::span<const StrategyId> strategies) const {
-  if (sides.size() < 2) return side_by_side(sides);
-  ConnectedParts parts(knowledge_);
-  for (const StrategyId strategy : strategies) parts.connect(knowledge_.rules[strategy].components);
-  std::map<std::size_t, std::vector<std::size_t>> members;  // sides, by part
-  for (std::size_t i = 0; i < sides.size(); ++i)
-    members[parts.of(knowledge_.rules[strategies[i]].components.front())].push_back(i);
-  std::vector<std::size_t> begins(sides.size());
-  for (const auto& [part, places] : members) {
-    std::vector<Side> together;
-    for (const std::size_t i : places) together.push_back(sides[i]);
-    const std::vector<std::size_t> found = side_by_side(together);
-    for (std::size_t k = 0; k < places.size(); ++k) begins[places[k]] = found[k];
-  }
-  return begins;
 }
 
 std::vector<Decision> PlanningStep::decisions() {

@@ -41,8 +41,6 @@ class PlanningStep {
   std::vector<WeighedCandidate*> chosen_together(const std::vector<WeighedCandidate*>& open) const;
   std::vector<WeighedCandidate*> weigh_together(const std::vector<WeighedCandidate*>& open,
                                                 const std::vector<WeighedCandidate*>& chosen) const;
-  std::vector<std::size_t> side_by_side_in_parts(std::span<const Side> sides,
-                                                 std::span<const StrategyId> strategies) const;
   std::optional<StrategyId> done_for_another(const WeighedCandidate& weighed,
                                              const std::vector<WeighedCandidate*>& chosen) const;
   bool is_taken(WeighedCandidate& weighed) const;
@@ -65,7 +63,6 @@ class PlanningStep {
   std::vector<bool> has_choice_;                // by failure
   std::vector<std::vector<Try>> tries_;         // by failure: what is left, in the order of u/c
   std::vector<Side> sides_;                     // of what was chosen so far
-  std::vector<StrategyId> sides_begin_with_;    // by side: what was chosen
   std::vector<std::vector<ComponentId>> asks_;  // by failure: Decision::asks
 };
 

@@ -2,8 +2,7 @@
 //
 // The set of the highest worth (conflict_free_set.h) counts the time of each of its strategies,
 // though the robot waits only for the longest. So the strategy that each of its failures begins
-// with is chosen once more, for all of them together, assuming further rounds as long as they fail.
-// Each connected part of the graph is weighed alone (connected_parts.h).
+// with is chosen once more, for all of them together, assuming further rounds as long as they fail:
 //
 //     E = sum_r ( sum_i p_i,r (c_i,r - t_i,r) + T_r )
 //

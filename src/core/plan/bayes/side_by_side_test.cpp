@@ -104,24 +104,15 @@ TEST(SideBySide, OfManyNoChangeAtOneSideAloneIsBetter) {
   }
 }
 
-// a is restarted first if it is alone; while d has to be redeployed, for which what needs both has to wait
-// anyway, a is, too.
+// a is restarted first if it is alone; while d has to be redeployed, a is, too.
 TEST(SideBySide, IsHowTheBayesPlannerBeginsSeveralStrategies) {
   const BayesPlanner downtime(Objective::kDowntime);
-  Scene scene(failure_of("a", "A") + failure_of("d", "D") + "COMPONENT fusion NODE /fusion\n");
-  scene.link("a", "fusion").link("d", "fusion").fail("A");
+  Scene scene(failure_of("a", "A") + failure_of("d", "D"));
+  scene.fail("A");
   EXPECT_EQ(scene.plan(downtime), "A.restart");
   scene.fail("D").tried("D.restart");
   EXPECT_EQ(scene.plan(downtime), "A.redeploy D.redeploy");
   EXPECT_EQ(scene.candidate("A.restart").excluded, Condition::kOneEach);
-}
-
-// The graph does not connect it with a.
-TEST(SideBySide, DecidesNothingForAnUnrelatedComponent) {
-  const BayesPlanner downtime(Objective::kDowntime);
-  Scene scene(failure_of("a", "A") + failure_of("d", "D"));
-  scene.fail("A").fail("D").tried("D.restart");
-  EXPECT_EQ(scene.plan(downtime), "A.restart D.redeploy");
 }
 
 }  // namespace
