@@ -201,8 +201,8 @@ bool Analyzer::is_left_down(GroupId group, const Attempt& attempt, Time now) con
 void Analyzer::detect(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   const bool was_repaired = std::exchange(state.was_repaired, false);
-  const bool recurs =
-      !was_repaired && state.gone_since != kLongAgo && now < later(state.gone_since, kRecurs);
+  const Duration soon = was_repaired ? kOutlasts : kRecurs;
+  const bool recurs = state.gone_since != kLongAgo && now < later(state.gone_since, soon);
   // A rule with ON_CHANGE acts on each edge.
   const bool is_same = state.search.times > 0 && !is_proven(state.gone_since, now) &&
                        !knowledge_.rules[id].policies.on_change;

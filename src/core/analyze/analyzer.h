@@ -60,9 +60,10 @@ class Analyzer {
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
   // The longest time that a verdict on a started component waits for its inputs.
   static constexpr Duration kInputs = std::chrono::seconds(14);
-  // A failure that is back within so long may be an effect that its cause brought back. Not one that a
-  // strategy of its own had cleared: that one begins anew.
+  // A failure that is back within so long may be an effect that its cause brought back.
   static constexpr Duration kRecurs = std::chrono::seconds(5);
+  // Likewise if a strategy of its own had cleared it. Later it begins anew.
+  static constexpr Duration kOutlasts = std::chrono::seconds(2);
   // A failure that came so often, each time before it was proven gone, flaps.
   static constexpr int kFlaps = 3;
 
