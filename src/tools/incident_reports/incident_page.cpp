@@ -68,13 +68,10 @@ class CourseOfRules {
     return kNames + (at - begin) / (end_ + margin_ - begin) * (kWide - kEdge - kNames);
   }
   std::string bar(const Json& from, double to, double y) const {
-    // The class is one of a few words: a word of a stranger is none of them.
-    std::string criticality = journal::text_of(from, "criticality");
-    if (criticality != "ERROR" && criticality != "WARNING") criticality = "NON_CRITICAL";
     const double left = x(clock_of(from));
     return fmt::format(
         "<rect class=\"{}\" x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" rx=\"2\"/>",
-        criticality, left, y + 5, std::max(3.0, x(to) - left), kRowHigh - 10);
+        criticality_class(from), left, y + 5, std::max(3.0, x(to) - left), kRowHigh - 10);
   }
   std::string course_of(const std::string& rule, double y) const {
     std::string bars;
