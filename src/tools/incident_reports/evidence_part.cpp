@@ -73,7 +73,9 @@ std::string onsets_of(const std::vector<Json>& events, double end) {
     cells += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"onset\">{}</td></tr>\n",
                          on_clock(row.at), xml_escaped(row.who), xml_escaped(row.text),
                          dot_at(row, begin, std::max(end, rows.back().at)));
-  return "<h2>What began first</h2>\n" +
+  return "<h2>What began first</h2>\n"
+         "<p class=\"note\">Filled: a failure, or evidence for a cause. Hollow: evidence against "
+         "it.</p>\n" +
          table_of(
              {"from", "component or rule", "what culprit saw",
               fmt::format("{} to {}", on_clock(begin), on_clock(std::max(end, rows.back().at)))},

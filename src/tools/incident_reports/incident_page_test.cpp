@@ -118,8 +118,8 @@ TEST_F(IncidentPage, ShowsTheEvidenceOnOneTimeAxis) {
   const std::string html = incident_page(page_of_rover());
   for (const char* text :
        {"What began first", "09:59:58.500", "drive is stopped", "kernel", "+2.9", "1.5 s before",
-        "class=\"for\"", "<circle class=\"ERROR\"", "one stayed before", "-1.2",
-        "Without “drive is stopped”, <b>lidar</b> would be held responsible"})
+        "class=\"for\"", "<circle class=\"ERROR\"", "Hollow: evidence against", "one stayed before",
+        "-1.2", "Without “drive is stopped”, <b>lidar</b> would be held responsible"})
     EXPECT_THAT(html, HasSubstr(text));
   EXPECT_LT(html.find("09:59:58.500"), html.find("10:00:00.000</td><td>TooFast"))
       << "the earliest first";
