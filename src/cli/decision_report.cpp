@@ -84,7 +84,7 @@ std::string hinges_of(const Json& body) {
     for (const Json& piece : evidence) {
       const std::string without = text_of(piece, "without");
       if (!without.empty())
-        out += fmt::format("  without \"{}\", {} would be responsible\n", text_of(piece, "text"),
+        out += fmt::format("  without \"{}\", {} would be held responsible\n", text_of(piece, "text"),
                            without);
     }
   }
