@@ -84,8 +84,8 @@ std::string hinges_of(const Json& body) {
     for (const Json& piece : evidence) {
       const std::string without = text_of(piece, "without");
       if (!without.empty())
-        out += fmt::format("  without \"{}\", {} would be responsible\n", text_of(piece, "text"),
-                           without);
+        out += fmt::format("  without \"{}\", {} would be held responsible\n",
+                           text_of(piece, "text"), without);
     }
   }
   return out.empty() ? "" : "\nWhat would change this\n" + out;

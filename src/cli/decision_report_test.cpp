@@ -36,7 +36,7 @@ TEST(DecisionReport, SaysWhatWouldChangeIt) {
   const std::string out =
       explained(R"({"source":"kernel","text":"camera exited","log_odds":2.9,"without":"fusion"})");
   EXPECT_THAT(out, HasSubstr("\nWhat would change this\n"
-                             "  without \"camera exited\", fusion would be responsible\n"));
+                             "  without \"camera exited\", fusion would be held responsible\n"));
 }
 
 TEST(DecisionReport, SaysNothingOfItWhereNothingWould) {

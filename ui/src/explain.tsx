@@ -119,6 +119,7 @@ function Onsets({ decision }: { decision: ManagerEvent }) {
           ))}
         </tbody>
       </table>
+      <p class="muted">Hollow: evidence against the suspect.</p>
     </details>
   )
 }

@@ -3,7 +3,7 @@
 import { largeRobot } from './large_robot.mjs'
 import { isLaidOut } from './layout.mjs'
 import { kSizes, pictures } from './pictures.mjs'
-import { hinging, kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
+import { hinging, kHealed, kIncidentEvents, kIncidents, kNow, kPausedLater, kStates, kToday, play, state } from './robots.mjs'
 import { expect, expectSoon, file, isAccessible, isFirefox, isUsableByKeyboard, kSchemes, saved, stubbed, suite } from './session.mjs'
 
 const kFindings = [
@@ -340,6 +340,8 @@ async function tellsWhatWouldChange(page, server) {
     const hidden = await page.locator('.cause-first').evaluate((column) => column.scrollWidth - column.clientWidth)
     expect(hidden <= 0, `the right column is ${hidden} pixels too wide at ${width} pixels`)
   }
+  await become(page, server, kPausedLater, 'robot')
+  await why.getByText('camera hangs').first().waitFor()
 }
 
 // The robot is drawn where it is, for as long as somebody looks; what is old looks old.

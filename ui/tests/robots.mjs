@@ -119,6 +119,10 @@ export const kStates = {
     cause: 'camera is down', level: 'Gave up', mode: 'Acting', also: ['nothing helped'] },
   deaf: { events: [], control: { hears: false }, state: { overview: { look: 'DEAF', headline: "culprit does not receive the robot's messages", detail: 'nothing is judged, and nothing is done' } }, cause: "Culprit does not receive the robot's messages", level: 'Unknown', mode: 'Deaf' },
 }
+// A person paused culprit after a strategy that did not help: the suspects are those of now.
+export const kPausedLater = { ...kStates.paused, events: [...kCameraDead, chosen(false),
+  event(kBroken + 5, 'strategy_failed', 'no help', 'warning', 'warning', 'rgb_redeploy did not help', { rule: 'RGBDead', strategy: 'rgb_redeploy' }),
+  { ...heldBack('paused by a person'), t: kBroken + 6, clock: kBegan + kBroken + 6, candidates: [candidate('rgb_redeploy')], suspects: [{ ...kSuspects[0], evidence: [evidence('measured', 'camera hangs', 2, 3.1)] }] }] }
 // It is over: 3 s later all of it was well. Names are only text.
 const kHealing = [...kCameraDead, chosen(false), ...kRules.map(({ name }) => event(kBroken + 3.01, 'failure_resolved', 'resolved', 'info', 'relief', `${name} resolved <b>rover</b>`, { rule: name, strategy: name === 'RGBDead' ? 'rgb_redeploy' : null, reaction_s: 3 })), event(kBroken + 3.01, 'incident_closed', 'incident', 'info', 'aside', '', { incident: kCause.id, rule: 'RGBDead', how: 'resolved' })]
 export const kHealed = { events: kHealing, control: {}, state: {} }

@@ -312,6 +312,25 @@ TEST(Checker, RefusesRunTimeValuesWhereConstantsBelong) {
             std::vector<std::string>{"R020"});
 }
 
+TEST(Checker, TakesAWholeNameForAServiceEvenIfItLooksLikeAType) {
+  for (const std::string service : {"/lidar/srv/enable", "~/srv/enable"}) {
+    const RuleSet rules = rules_of(
+        "COMPONENT lidar NODE /lidar\nRULE Dead\n  POLICIES ERROR\n  TRIGGER !alive(lidar)\n"
+        "    STRATEGY again 50 10\n      ADAPTATION lidar call " +
+        service + " 5\n");
+    EXPECT_EQ(rules.rules.size(), 1u) << service;
+  }
+}
+
+TEST(Checker, SuggestsNoTextWithinATextAndNoCallAroundOne) {
+  const Source source("test.rules",
+                      "SIGNAL heat DIAGNOSTIC \"left motor\" front KEY heat\n"
+                      "RULE R\n  POLICIES ERROR REPORT\n  TRIGGER state == \"a\"|\"b\"|\"c\"\n");
+  const std::string messages = all_messages(source, check(source));
+  EXPECT_EQ(messages.find("write \"\""), std::string::npos) << messages;
+  EXPECT_EQ(messages.find("abs("), std::string::npos) << messages;
+}
+
 TEST(Checker, SeesCirclesWhateverTheComponentsAreCalled) {
   EXPECT_EQ(codes_of("COMPONENT a NODE /a\nCOMPONENT b NODE /b\n"
                      "DEPENDENCY /a ON b\nDEPENDENCY /b ON a\n"),
