@@ -444,6 +444,8 @@ TEST(BayesPlanner, LeavesAFailureAloneForAsLongAsSuchFailuresTookToClear) {
   EXPECT_EQ(scene.candidate("A.restart").excluded, Condition::kSettling);
   EXPECT_EQ(describe_exclusion(scene.candidate("A.restart"), scene.rules()),
             "such failures often clear by themselves");
+  EXPECT_EQ(describe_end_of_wait(scene.candidate("A.restart"), scene.rules()),
+            "if A still fails after 1.00 s, a is held responsible");
   scene.fail("A", 4s);  // 6 s ago
   EXPECT_EQ(scene.plan(kBalanced), "A.restart");
 }
