@@ -332,6 +332,7 @@ async function tellsWhatWouldChange(page, server) {
   expect((await why.getByText('What would change this').count()) === 0, 'something would change a decision that hinges on nothing')
   await become(page, server, hinging(kStates.ill), 'robot')
   await why.getByText('Without “camera exited”, fusion would be held responsible.').waitFor()
+  await why.getByText('If camera does not answer within 0.60 s, camera is held responsible.').waitFor()
   await why.getByText('What began first').click()
   await why.getByRole('rowheader', { name: 'camera: camera exited' }).waitFor()
   for (const [width, height] of [[1024, 768], [1440, 900]]) {

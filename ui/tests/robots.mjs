@@ -64,8 +64,10 @@ const kSuspects = [
   { component: 'camera', failure: 'RGBDead', probability: 0.97, evidence: [evidence('kernel', 'camera exited', 0.02, 5.1), evidence('alarm', 'RGBDead fires', 0.01, 1.2)] },
   { component: 'fusion', failure: 'FusionSilent', probability: 0.03, evidence: [evidence('measured', 'fusion answered', 0.004, -2.3)] },
 ]
-// As above, where the decision hinges on one piece of evidence.
-export const hinging = (state) => ({ ...state, events: state.events.map((e) => (e.suspects ? { ...e, suspects: kSuspects.map((s) => ({ ...s, evidence: s.evidence.map((each) => (each.text === 'camera exited' ? { ...each, without: 'fusion' } : each)) })) } : e)) })
+// As above, where the decision hinges on one piece of evidence, and a wait has an end.
+const kEnd = 'if camera does not answer within 0.60 s, camera is held responsible'
+const ending = (candidates) => candidates?.map((each) => (each.excluded ? { ...each, excluded: { ...each.excluded, ends: kEnd } } : each))
+export const hinging = (state) => ({ ...state, events: state.events.map((e) => (e.suspects ? { ...e, candidates: ending(e.candidates), suspects: kSuspects.map((s) => ({ ...s, evidence: s.evidence.map((each) => (each.text === 'camera exited' ? { ...each, without: 'fusion' } : each)) })) } : e)) })
 const because = (failure) => ({ condition: 'dependency', component: 'camera', failure, text: `camera may be the cause, by ${failure}` })
 const candidate = (name, excluded = null) => ({ strategy: name, impact: 5, cost: excluded ? 0 : 0.55, value: 0.9, resolves: 0.9, excluded })
 const kAll = [candidate('rgb_restart', { condition: 'tried', text: 'it was tried already' }), candidate('rgb_redeploy')]

@@ -45,9 +45,14 @@ class Collector {
   std::vector<PieceOfEvidence> own(std::size_t i) {
     const double explained = diagnosis_.explained(i);
     for (const ComponentId c : touched_by(causes_[i].rule, knowledge_)) {
-      if (is_known_down(causes_[i].rule, knowledge_) && is_known_down(c, knowledge_))
+      if (is_known_down(causes_[i].rule, knowledge_)) {
+        if (!is_known_down(c, knowledge_)) continue;
         add(EvidenceSource::kKernel, name(c) + " exited or is stopped",
             knowledge_.components[c].process_since, logit(kKnownDown));
+      } else if (explained > 0 && diagnosis_.prior(i) > 0.5 && knowledge_.components[c].hangs()) {
+        add(EvidenceSource::kMeasured, name(c) + " hangs by itself",
+            onset_of_hang(c, knowledge_).latest, logit(kKnownDown));
+      }
     }
     if (all_.size() == 1) change(otherwise_.with_prior(kCoincidence));
     if (explained <= 0) {
