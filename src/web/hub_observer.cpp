@@ -38,10 +38,11 @@ void HubObserver::begins(const Manager& manager, std::function<Remarks()> remark
   manager_ = &manager;
   remarks_ = std::move(remarks);
   start_ = start;
-  told_ = next_tell_ = kLongAgo;
+  told_ = next_tell_ = told_learned_ = kLongAgo;
   is_graph_new_ = true;
   told_control_.clear();
   metrics_.watch(manager);
+  hub_.publish(Kind::kLearned, "{}");  // the old one counts by other rules
   hub_.publish(Kind::kRobot, to_line(rules_to_json(manager.knowledge().rules)));
 }
 
@@ -89,6 +90,10 @@ void HubObserver::tell_state(Time now) {
   add_looks(*manager_, state);
   state["incidents"] = incidents_to_json(*manager_, start_);
   if (remarks_) add_remarks(state);
+  if (now >= later(told_learned_, kLearnedPeriod)) {
+    hub_.publish(Kind::kLearned, to_line(learned_to_json(knowledge)));
+    told_learned_ = now;
+  }
   hub_.publish(Kind::kState, to_line(state));
   told_ = now;
   next_tell_ = later(now, kPeriod);

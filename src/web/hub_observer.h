@@ -21,6 +21,9 @@ class HubObserver : public live::Observer {
   // After an event the state is published sooner, at most this often.
   static constexpr Duration kSoon = std::chrono::milliseconds(33);
 
+  // What was learned of pairs of failures is published at most this often.
+  static constexpr Duration kLearnedPeriod = std::chrono::seconds(1);
+
   // Seconds since 1970: what people read off a wall, while the robot may count otherwise.
   using WallClock = std::function<double()>;
   static double wall_clock();
@@ -49,7 +52,8 @@ class HubObserver : public live::Observer {
   const Manager* manager_ = nullptr;  // null: none has begun
   std::function<Remarks()> remarks_;
   Time start_{};
-  Time told_ = kLongAgo;       // when the state was told last
+  Time told_ = kLongAgo;  // when the state was told last
+  Time told_learned_ = kLongAgo;
   Time next_tell_ = kLongAgo;  // when it may be told again
   bool is_graph_new_ = true;
   std::string told_control_;

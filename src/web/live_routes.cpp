@@ -40,6 +40,8 @@ Answer beliefs(Hub& hub) {
   const Answer robot = newest(hub, Kind::kRobot);
   const Answer state = newest(hub, Kind::kState);
   if (robot.status != 200 || state.status != 200) return robot.status != 200 ? robot : state;
+  const auto pairs = hub.latest(Kind::kLearned);
+  const Json learned = pairs ? parse_json(*pairs) : Json::object();
   const Json& rules = robot.body["rules"];
   const Json& now = state.body["beliefs"];
   const Json& priors = state.body["priors"];
@@ -60,7 +62,7 @@ Answer beliefs(Hub& hub) {
                                      {"prior", prior}});
     }
   }
-  for (const Json& each : state.body["couplings"]) {
+  for (const Json& each : learned.value("couplings", Json::array())) {
     const auto cause = each[0].get<std::size_t>();
     const auto effect = each[1].get<std::size_t>();
     if (cause >= rules.size() || effect >= rules.size()) continue;
@@ -70,7 +72,7 @@ Answer beliefs(Hub& hub) {
                                      {"stayed", each[3]},
                                      {"spared", each[4]}});
   }
-  for (const Json& each : state.body["latencies"]) {
+  for (const Json& each : learned.value("latencies", Json::array())) {
     const auto rule = each[0].get<std::size_t>();
     if (rule >= rules.size()) continue;
     document["latencies"].push_back({{"rule", rules[rule]["name"]},
@@ -78,7 +80,7 @@ Answer beliefs(Hub& hub) {
                                      {"least_s", each[2]},
                                      {"most_s", each[3]}});
   }
-  for (const Json& each : state.body["coincidences"]) {
+  for (const Json& each : learned.value("coincidences", Json::array())) {
     const auto rule = each[0].get<std::size_t>();
     const auto other = each[1].get<std::size_t>();
     if (rule >= rules.size() || other >= rules.size()) continue;

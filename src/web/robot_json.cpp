@@ -194,6 +194,12 @@ Json coincidences_to_json(const Knowledge& knowledge) {
 
 }  // namespace
 
+Json learned_to_json(const Knowledge& knowledge) {
+  return {{"couplings", couplings_to_json(knowledge)},
+          {"latencies", latencies_to_json(knowledge)},
+          {"coincidences", coincidences_to_json(knowledge)}};
+}
+
 Json rules_to_json(const RuleSet& rules) {
   Json json{{"robot", rules.robot},        {"cycle_s", seconds(rules.cycle)},
             {"components", Json::array()}, {"topics", Json::array()},
@@ -392,9 +398,6 @@ Json state_to_json(const Knowledge& knowledge, Time start) {
     json["beliefs"].push_back(Json::array({belief.alpha, belief.beta}));
     json["priors"].push_back(Json::array({prior.alpha, prior.beta}));
   }
-  json["couplings"] = couplings_to_json(knowledge);
-  json["latencies"] = latencies_to_json(knowledge);
-  json["coincidences"] = coincidences_to_json(knowledge);
   return json;
 }
 

@@ -445,7 +445,8 @@ TEST_F(Routes, DoNotFollowAnOrderThatCameTooLateUnlessItRestrains) {
 TEST_F(Routes, ExportWhatWasLearned) {
   hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "strategies": [
       {"name": "s", "prior": [9, 1]}, {"name": "t", "prior": [5, 5]}]}]})");
-  hub.publish(Kind::kState, R"({"beliefs": [[3, 7], [5, 5]], "priors": [[2, 7], [5, 5]],
+  hub.publish(Kind::kState, R"({"beliefs": [[3, 7], [5, 5]], "priors": [[2, 7], [5, 5]]})");
+  hub.publish(Kind::kLearned, R"({
       "couplings": [[0, 0, 2, 1, 6.5]], "latencies": [[0, 3, 0.5, 2.25]],
       "coincidences": [[0, 0, 4], [0, 7, 2]]})");
   const Json learned = ask("get /api/beliefs").body;

@@ -83,9 +83,6 @@ export interface State {
   inputs: (number | string | boolean | null)[]
   beliefs: [number, number][]
   priors: [number, number][] // that they began from: what the rules say, or a fleet learned
-  couplings: [cause: number, effect: number, cleared: number, stayed: number, spared: number][]
-  latencies: [rule: number, count: number, least_s: number, most_s: number][]
-  coincidences: [rule: number, other: number, count: number][] // of a rule with itself: how often it failed
 }
 
 export interface ControlState {

@@ -28,7 +28,7 @@ export function largeRobot(count) {
       rules: names.map(() => ({ phase: 'quiet', trigger: false })),
       components: names.map((_, i) => ({ health: isIll(i) ? 'ERROR' : 'OK', look: isIll(i) ? 'ERROR' : 'OK', condition: '', present: true, alive: true })),
       topics: names.map((_, i) => ({ rate: 10 + ((t * 30 + i) % 7), age: 0.1 })),
-      inputs: [], beliefs: names.map(() => [5, 5]), priors: names.map(() => [5, 5]), couplings: [], latencies: [], coincidences: [],
+      inputs: [], beliefs: names.map(() => [5, 5]), priors: names.map(() => [5, 5]),
     }
   }
   return { documents, stateAt }

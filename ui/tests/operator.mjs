@@ -176,7 +176,7 @@ const kEvil = '<img src=x onerror="window.wasHarmed = true">'
 const kEvilStream = {
   robot: { robot: kEvil, cycle_s: 0.2, components: [{ name: kEvil, can_start: false }], topics: [kEvil], inputs: [], rules: [] },
   graph: { nodes: [{ node: kEvil, present: true, component: kEvil }], edges: [[kEvil, `${kEvil}2`, kEvil]] },
-  state: { t: 1, clock: 1, rules: [], incidents: [], overview: { look: 'OK', headline: kEvil, detail: kEvil }, components: [{ health: 'OK', look: 'DEAD', condition: kEvil, present: true, alive: true, remark: kEvil }], topics: [{ rate: 1, age: 0 }], inputs: [], beliefs: [], priors: [], couplings: [], latencies: [], coincidences: [] },
+  state: { t: 1, clock: 1, rules: [], incidents: [], overview: { look: 'OK', headline: kEvil, detail: kEvil }, components: [{ health: 'OK', look: 'DEAD', condition: kEvil, present: true, alive: true, remark: kEvil }], topics: [{ rate: 1, age: 0 }], inputs: [], beliefs: [], priors: [] },
   event: { t: 1, type: 'trouble', label: kEvil, severity: 'warning', tone: kEvil, text: kEvil },
 }
 

@@ -55,7 +55,7 @@ export const state = (t, { dead = null, incidents = [], overview = null, held = 
   components: kComponents.map((name) => ({
     ...lookOf(name, dead, rules, overview?.look === 'DEAF'), ...held[name], present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active' })),
   topics: kTopics.map((_, i) => ({ rate: 10 + i, age: dead && i !== 1 ? t - kBroken : 0.05 })),
-  inputs: [!dead, 0.1, 0.04], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), priors: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), couplings: [], latencies: [], coincidences: [],
+  inputs: [!dead, 0.1, 0.04], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), priors: kRules.flatMap((r) => r.strategies.map((s) => s.prior)),
 })
 
 const event = (t, type, label, severity, tone, text, more) => ({ t, clock: kBegan + t, type, label, severity, tone, text, ...more })

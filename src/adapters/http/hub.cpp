@@ -6,8 +6,8 @@
 namespace culprit::web {
 
 std::string_view to_string(Kind kind) {
-  constexpr std::array<std::string_view, kKinds> kNames = {"robot", "graph", "state", "control",
-                                                           "event"};
+  constexpr std::array<std::string_view, kKinds> kNames = {"robot",   "graph",   "state",
+                                                           "control", "learned", "event"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -54,6 +54,7 @@ Hub::Batch Hub::collect(std::uint64_t after) const {
   // Where the batch had to stop, newer messages wait for the next: none may overtake an event.
   const std::uint64_t end = next == events_.end() ? last_ : batch.messages.back().number;
   for (const Message& message : latest_) {
+    if (message.kind == Kind::kLearned) continue;
     if (message.number > after && message.number <= end) batch.messages.push_back(message);
   }
   std::sort(batch.messages.begin(), batch.messages.end(),

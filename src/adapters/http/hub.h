@@ -22,9 +22,10 @@
 
 namespace culprit::web {
 
-enum class Kind : std::uint8_t { kRobot, kGraph, kState, kControl, kEvent };
-inline constexpr std::size_t kKinds = 5;
-// "robot", "graph", "state", "control", "event": as the stream names them.
+// kLearned may be large, and is only for latest(): no stream has it.
+enum class Kind : std::uint8_t { kRobot, kGraph, kState, kControl, kLearned, kEvent };
+inline constexpr std::size_t kKinds = 6;
+// "robot", "graph", "state", "control", "learned", "event": as the stream names them.
 std::string_view to_string(Kind kind);
 
 struct Message {
