@@ -541,7 +541,7 @@ void StrategyExecutor::owe(const execute::Undo& undo, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
   if (lifecycle == nullptr || lifecycle->target != Lifecycle::kActive) return;
   ComponentState& state = write_.components[undo.component];
-  state.brought = Brought{Lifecycle::kInactive, false, true};
+  state.brought = Brought{Lifecycle::kInactive, false, true, now};
   write_.events.tell(now, LifecycleIntended{undo.component, state.intended_lifecycle, true});
 }
 

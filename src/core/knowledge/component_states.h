@@ -38,6 +38,7 @@ struct Brought {
   bool is_changed = false;
   // It was deactivated, and could not be activated again when that was undone.
   bool is_owed = false;
+  Time since = kLongAgo;  // when that was known, if it is owed
 };
 
 // A trouble (diagnose/trouble.h) that is over: that it was not active, or another that a failure was there
