@@ -126,6 +126,7 @@ class AdaptationReader {
       case kCall:
         if (!take_name(adaptation.subject, "the service")) return false;
         if (const Name& service = adaptation.subject;
+            !service.text.starts_with('/') && !service.text.starts_with('~') &&
             service.text.find("/srv/") != std::string::npos)
           return read_.fail(Code::kSyntax, service.span,
                             "this is the type of a service, and no name",

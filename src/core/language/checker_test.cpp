@@ -168,6 +168,18 @@ RULE R
   EXPECT_EQ(rules.heaviest, Cycles{12});
 }
 
+// Only a name without its beginning is a type, as in std_srvs/srv/Trigger.
+TEST(Checker, AServiceMayStandInANamespaceThatIsCalledSrv) {
+  for (const std::string service : {"~/srv/reset", "/driver/srv/reset"}) {
+    const RuleSet rules = rules_of(
+        "COMPONENT driver NODE /driver\nRULE R\nPOLICIES ERROR\nTRIGGER !alive(driver)\n"
+        "STRATEGY s 50 10\nADAPTATION driver call " +
+        service + " 5\n");
+    ASSERT_EQ(rules.strategies.size(), 1u) << service;
+    EXPECT_EQ(rules.strategies[0].adaptations[0].subject, service);
+  }
+}
+
 TEST(Checker, AcceptsTheAliasesOfCriticality) {
   for (const auto& [word, level] : {std::pair{"OK", Criticality::kNonCritical},
                                     {"DEGRADED", Criticality::kWarning},
