@@ -228,7 +228,8 @@ void Monitor::note_given_back(ComponentId component, Lifecycle now, Time at) {
   if (!state.brought || !state.brought->is_owed) return;
   const bool was_active = state.lifecycle == Lifecycle::kActive;
   const bool is_active = now == Lifecycle::kActive;
-  const bool is_activated = is_active && !was_active && state.lifecycle != Lifecycle::kUnknown;
+  const bool is_activated =
+      is_active && !was_active && (state.lifecycle != Lifecycle::kUnknown || state.took_place);
   const bool stays_active =
       (was_active || is_active) && at >= later(state.brought->since, kUnknownTransition);
   if (!is_activated && !stays_active) return;

@@ -144,6 +144,17 @@ TEST(Monitor, APersonMayDeactivateWhatIsActiveAgain) {
   EXPECT_EQ(watched.state().intended_lifecycle, Lifecycle::kInactive);
 }
 
+TEST(Monitor, ANewProcessThatComesUpActiveIsOwedNothing) {
+  Owed watched;
+  watched.read(1s, Lifecycle::kInactive);
+  watched.observe(2s, NodeVanished{"/c"});
+  watched.observe(3s, NodeAppeared{"/c", 8});
+  EXPECT_TRUE(watched.state().is_to_be_given_back());
+  watched.read(3s, Lifecycle::kActive);
+  EXPECT_FALSE(watched.state().is_to_be_given_back());
+  EXPECT_FALSE(watched.is_said_to_be_owed());
+}
+
 TEST(Monitor, ALateAnswerToAnAbandonedDeactivationIsNobodysWish) {
   Owed watched;
   watched.read(1s, Lifecycle::kActive);
