@@ -84,9 +84,15 @@ std::string hinges_of(const Json& body) {
     for (const Json& piece : evidence) {
       const std::string without = text_of(piece, "without");
       if (!without.empty())
-        out += fmt::format("  without \"{}\", {} would be responsible\n", text_of(piece, "text"),
-                           without);
+        out += fmt::format("  without \"{}\", {} would be held responsible\n",
+                           text_of(piece, "text"), without);
     }
+  }
+  // Strategies of one rule mostly wait for the same.
+  for (const Json& candidate : body.value("candidates", Json::array())) {
+    const std::string end = text_of(candidate, "ends");
+    const std::string line = "  " + end + "\n";
+    if (!end.empty() && out.find(line) == std::string::npos) out += line;
   }
   return out.empty() ? "" : "\nWhat would change this\n" + out;
 }

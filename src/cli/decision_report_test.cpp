@@ -18,14 +18,15 @@ using testing::Not;
 
 constexpr std::int64_t kReportedAt = 1'800'000'000'000'000'000;  // ns since 1970
 
-std::string explained(const std::string& evidence) {
+std::string explained(const std::string& evidence,
+                      const std::string& candidates = R"({"strategy":"s","cost":0.5})") {
   const TestFolder folder;
   journal::Batch rows;
   rows.entries.push_back(
       {0, kReportedAt, std::string(journal::kind::kEvent),
        R"({"type":"strategy_chosen","rule":"R","strategy":"s","text":"camera is responsible","time":1,)"
        R"("suspects":[{"component":"camera","failure":"R","probability":0.9,"evidence":[)" +
-           evidence + R"(]}],"candidates":[{"strategy":"s","cost":0.5}]})"});
+           evidence + R"(]}],"candidates":[)" + candidates + "]}"});
   auto writer = value_of(journal::Writer::open(folder / "a.journal", {}));
   const auto done = writer.append(rows, kReportedAt, journal::Durability::kProcessEnd);
   EXPECT_TRUE(done) << done.error();
@@ -36,13 +37,25 @@ TEST(DecisionReport, SaysWhatWouldChangeIt) {
   const std::string out =
       explained(R"({"source":"kernel","text":"camera exited","log_odds":2.9,"without":"fusion"})");
   EXPECT_THAT(out, HasSubstr("\nWhat would change this\n"
-                             "  without \"camera exited\", fusion would be responsible\n"));
+                             "  without \"camera exited\", fusion would be held responsible\n"));
 }
 
 TEST(DecisionReport, SaysNothingOfItWhereNothingWould) {
   const std::string out = explained(R"({"source":"kernel","text":"camera exited","log_odds":2.9})");
   EXPECT_THAT(out, HasSubstr("camera exited (kernel, +2.9)"));
   EXPECT_THAT(out, Not(HasSubstr("What would change")));
+}
+
+TEST(DecisionReport, SaysOnceWhatWouldEndTheWait) {
+  const std::string waits =
+      R"("excluded":"suspect","because":"it depends on camera","ends":"if camera does not answer)"
+      R"( within 0.60 s, camera is held responsible"})";
+  const std::string out =
+      explained(R"({"source":"kernel","text":"camera exited","log_odds":2.9,"without":"fusion"})",
+                R"({"strategy":"s",)" + waits + R"(,{"strategy":"t",)" + waits);
+  EXPECT_THAT(out, HasSubstr("\n  without \"camera exited\", fusion would be responsible\n"
+                             "  if camera does not answer within 0.60 s, camera is held "
+                             "responsible\n\nStrategies compared\n"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "base/name_grammar.h"
 #include "base/ros_names.h"
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
@@ -99,7 +100,7 @@ Expected<Picture> look(Duration wait) {
 // "  (process 4711)", "  (on rover2)", or nothing.
 std::string in_words(const Place& place) {
   if (place.pid != 0) return fmt::format("  (process {})", place.pid);
-  return place.host.empty() ? "" : fmt::format("  (on {})", place.host);
+  return place.host.empty() ? "" : fmt::format("  (on {})", escape_controls(place.host));
 }
 
 void print_text(const Picture& picture) {

@@ -43,6 +43,23 @@ TEST(EventJson, HasTheWordsOfTheJournalAndWhatAPageShows) {
   EXPECT_EQ(excluded["text"], "it depends on camera, which may be the cause (CameraGone)");
 }
 
+TEST(EventJson, SaysWhatWouldEndAWait) {
+  const RuleSet rules = *check(Source("test", kRules)).rules;
+  Candidate waits{StrategyId(1), 0.5, Condition::kSuspect, ComponentId(0), std::nullopt, ""};
+  const auto end = [&] {
+    const Json json =
+        to_json(Event{Time(3s), FailureHeldBack{RuleId(1), {waits}}}, rules, Time(1s));
+    return json["candidates"][0]["excluded"].value("ends", "");
+  };
+  EXPECT_EQ(end(), "") << "that is not known";
+  waits.within = 600ms;
+  EXPECT_EQ(end(), "if camera does not answer within 0.60 s, camera is held responsible");
+  waits.failure = RuleId(0);
+  EXPECT_EQ(end(), "if CameraGone does not fire within 0.60 s, fusion is held responsible");
+  waits.excluded = Condition::kDependency;
+  EXPECT_EQ(end(), "if camera is not back within 0.60 s, fusion is held responsible");
+}
+
 TEST(EventJson, TellsWhatAChosenStrategyDoesAndToWhichComponents) {
   const RuleSet rules = *check(Source("test", kRules)).rules;
   const Json json = to_json(Event{Time(1s), StrategyChosen{StrategyId(0), {}, {}}}, rules, Time());

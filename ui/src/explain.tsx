@@ -40,9 +40,10 @@ function EvidenceList({ evidence }: { evidence: Evidence[] }) {
 }
 
 // As culprit computed it with the decision.
-function WhatWouldChange({ suspects }: { suspects: Suspect[] }) {
-  const hinges = suspects.flatMap(({ evidence }) => (evidence ?? []).filter((each) => each.without))
-  if (hinges.length === 0) return null
+function WhatWouldChange({ decision }: { decision: ManagerEvent }) {
+  const hinges = (decision.suspects ?? []).flatMap(({ evidence }) => (evidence ?? []).filter((each) => each.without))
+  const ends = new Set((decision.candidates ?? []).flatMap(({ excluded }) => (excluded?.ends ? [excluded.ends] : [])))
+  if (hinges.length === 0 && ends.size === 0) return null
   return (
     <>
       <h3>What would change this</h3>
@@ -51,6 +52,9 @@ function WhatWouldChange({ suspects }: { suspects: Suspect[] }) {
           <li>
             Without “{text}”, <b>{without}</b> would be held responsible.
           </li>
+        ))}
+        {[...ends].map((end) => (
+          <li>{sentence(end)}</li>
         ))}
       </ul>
     </>
@@ -119,6 +123,7 @@ function Onsets({ decision }: { decision: ManagerEvent }) {
           ))}
         </tbody>
       </table>
+      <p class="muted">Hollow: evidence against the suspect.</p>
     </details>
   )
 }
@@ -180,7 +185,7 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
     <details class="why" open={isOpen}>
       <summary>Possible causes and repairs</summary>
       <Suspects decision={decision} rule={failure.rule} />
-      <WhatWouldChange suspects={decision.suspects ?? []} />
+      <WhatWouldChange decision={decision} />
       <Onsets decision={decision} />
       <Candidates
         list={decision.candidates ?? []}

@@ -63,7 +63,7 @@ function situationAt(history: ManagerEvent[], t: number): Situation {
         break
       case 'action_held_back': // paused, silenced, or beyond a limit: whose fault it is is known nevertheless
         if (!failure) break
-        if (!failure.decision?.candidates?.length) failure.decision = event
+        if (event.candidates?.length || !failure.decision?.candidates?.length) failure.decision = event
         failure.blame = event
         break
       case 'failure_held_back':

@@ -7,7 +7,7 @@ import { kNode, layered, type Point } from './layout'
 import type { SceneContent, SceneEdge, SceneNode } from './scene'
 
 type Mistake = 'error' | 'warning'
-interface Written {
+export interface Written {
   name: string
   file?: string
   line?: number
@@ -46,8 +46,10 @@ export function graphFollows(read: () => string): () => void {
       const graph = await call<FileGraph>('POST', '/api/rules/graph', { text })
       if (mine !== newest) return
       const isNone = graph.components.length + graph.rules.length === 0 && graph.errors > 0
-      if (!isNone || !fileGraph.value) fileGraph.value = graph
-      why.value = isNone ? 'It is that of an earlier text: nothing of this one can be read' : ''
+      const shown = isNone ? (fileGraph.value ?? graph) : graph
+      fileGraph.value = shown
+      const isEarlier = shown.components.length + shown.rules.length > 0
+      why.value = !isNone ? '' : isEarlier ? 'This graph is of an earlier text: mend the errors to see the present one' : 'There is no graph yet: mend the errors first'
     } catch (error) {
       if (mine === newest && (error as Refusal).status !== 0) why.value = (error as Refusal).message
     }
@@ -65,9 +67,12 @@ export function graphFollows(read: () => string): () => void {
 }
 
 export const idOf = (kind: 'component' | 'rule', name: string) => `${kind} ${name}`
+const nodeOf = (graph: FileGraph, id: string | null): Written | undefined =>
+  graph.components.find((c) => idOf('component', c.name) === id) ?? graph.rules.find((r) => idOf('rule', r.name) === id)
+export const has = (graph: FileGraph, id: string | null) => nodeOf(graph, id) !== undefined
 // Its line, if it stands in the text itself.
 export function lineOf(graph: FileGraph, id: string): number | undefined {
-  const found = graph.components.find((c) => idOf('component', c.name) === id) ?? graph.rules.find((r) => idOf('rule', r.name) === id)
+  const found = nodeOf(graph, id)
   return found?.file === kNameOfText ? found.line : undefined
 }
 

@@ -1,10 +1,10 @@
-// The graph of the rule file, beside its text. A press on a node leads to its line.
+// The graph of the rule file, beside its text. A press on a node leads to its line; without a pointer, a list of the nodes does.
 import { effect, signal } from '@preact/signals'
 import { useEffect, useRef, useState } from 'preact/hooks'
 import { coloursNow } from './graph_style'
 import { listed } from './incidents'
 import type { Point } from './layout'
-import { contentOf, type FileGraph, fileGraph, graphFollows, idOf, lineOf, placesOf, why } from './rule_graph'
+import { contentOf, type FileGraph, fileGraph, graphFollows, has, idOf, lineOf, placesOf, why, type Written } from './rule_graph'
 import { extentOf, Scene } from './scene'
 import { can } from './store'
 import { isDark, isDevice } from './theme'
@@ -67,6 +67,30 @@ function Chosen({ graph }: { graph: FileGraph }) {
   return parts.length > 0 ? <p>{`${rule.name} ${parts.join('; ')}.`}</p> : null
 }
 
+// The same as a press on the drawing, by keyboard. The list alone only chooses: an arrow key in it must not move the focus into the text.
+function NodeChoice({ graph, onLine }: { graph: FileGraph; onLine: (line: number) => void }) {
+  const options = (kind: 'component' | 'rule', all: Written[]) =>
+    all.map(({ name, mistake }) => (
+      <option value={idOf(kind, name)}>
+        {name}
+        {mistake ? ` (${mistake})` : ''}
+      </option>
+    ))
+  const line = chosen.value ? lineOf(graph, chosen.value) : undefined
+  return (
+    <p>
+      <select aria-label="Node of the graph" value={has(graph, chosen.value) ? chosen.value! : ''} onChange={(e) => (chosen.value = e.currentTarget.value || null)}>
+        <option value="">no node</option>
+        {graph.components.length > 0 && <optgroup label="Components">{options('component', graph.components)}</optgroup>}
+        {graph.rules.length > 0 && <optgroup label="Rules">{options('rule', graph.rules)}</optgroup>}
+      </select>{' '}
+      <button type="button" disabled={!line} onClick={() => line && onLine(line)}>
+        Go to its line
+      </button>
+    </p>
+  )
+}
+
 const counted = (count: number, what: string) => `${count} ${what}${count === 1 ? '' : 's'}`
 
 export function RuleGraphView({ text, onLine }: { text: () => string; onLine: (line: number) => void }) {
@@ -82,6 +106,7 @@ export function RuleGraphView({ text, onLine }: { text: () => string; onLine: (l
         <>
           <Canvas onLine={onLine} />
           <p class="muted">Lines: solid, depends on; dotted, is read by; dashed, adapts. Marks: ◆ error, ▲ warning.</p>
+          {graph && <NodeChoice graph={graph} onLine={onLine} />}
           {why.value && <p class="muted">{why.value}.</p>}
           {graph && <Chosen graph={graph} />}
         </>

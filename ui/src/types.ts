@@ -103,7 +103,7 @@ export interface Candidate {
   cost: number
   value: number
   resolves: number
-  excluded: { condition: string; text: string; component?: string; failure?: string } | null
+  excluded: { condition: string; text: string; component?: string; failure?: string; ends?: string } | null
 }
 export interface Suspect {
   component: string

@@ -1,7 +1,7 @@
-// The graph of the file beside its text: it follows what one writes, also while that has mistakes, and a press leads to the line.
+// The graph of the file beside its text: it follows what one writes, also while that has mistakes, and a press leads to the line, as the list of its nodes does.
 import { writeFileSync } from 'node:fs'
 import { isLaidOut } from './layout.mjs'
-import { expectSoon, file, isAccessible, session } from './session.mjs'
+import { expect, expectSoon, file, isAccessible, session } from './session.mjs'
 
 const kRules = `# A comment.
 COMPONENT camera NODE /camera
@@ -38,6 +38,18 @@ export async function drawsTheFile() {
     await write('RULE Second\n  TRIGGER age(/fused) > "long"\n')
     await says('2 components, 2 rules')
     await page.getByRole('list', { name: 'Findings of the check' }).getByText('line 11').first().waitFor()
+    const nodes = graph.getByLabel('Node of the graph')
+    const toLine = graph.getByRole('button', { name: 'Go to its line' })
+    await nodes.focus()
+    await nodes.selectOption('')
+    await expectSoon(() => toLine.isDisabled(), 'the button leads to a line although no node is chosen')
+    await nodes.selectOption('rule CameraSilent')
+    await graph.getByText('CameraSilent adapts camera; may spread to fusion.').waitFor()
+    await page.keyboard.press('Tab')
+    await page.keyboard.press('Enter')
+    const isAtTheRule = async () => (await page.locator('.cm-activeLine').first().innerText()).startsWith('RULE CameraSilent')
+    await expectSoon(isAtTheRule, 'the button does not lead to the line of the node')
+    expect((await nodes.locator('option[value="rule Second"]').textContent()) === 'Second (error)', 'the list does not name a mistake')
     await isAccessible(page)
     for (const [width, height] of [[1440, 900], [1024, 768], [390, 844]]) {
       await page.setViewportSize({ width, height })
@@ -45,7 +57,7 @@ export async function drawsTheFile() {
     }
     await page.setViewportSize({ width: 1440, height: 900 })
     await write('USE nothing(camera)\n')
-    await graph.getByText('It is that of an earlier text').waitFor()
+    await graph.getByText('This graph is of an earlier text').waitFor()
     await says('2 components, 2 rules')
   })
 }

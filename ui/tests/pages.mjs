@@ -3,7 +3,7 @@
 import { largeRobot } from './large_robot.mjs'
 import { isLaidOut } from './layout.mjs'
 import { kSizes, pictures } from './pictures.mjs'
-import { hinging, kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
+import { hinging, kHealed, kIncidentEvents, kIncidents, kNow, kPausedLater, kStates, kToday, play, state } from './robots.mjs'
 import { expect, expectSoon, file, isAccessible, isFirefox, isUsableByKeyboard, kSchemes, saved, stubbed, suite } from './session.mjs'
 
 const kFindings = [
@@ -332,6 +332,7 @@ async function tellsWhatWouldChange(page, server) {
   expect((await why.getByText('What would change this').count()) === 0, 'something would change a decision that hinges on nothing')
   await become(page, server, hinging(kStates.ill), 'robot')
   await why.getByText('Without “camera exited”, fusion would be held responsible.').waitFor()
+  await why.getByText('If camera does not answer within 0.60 s, camera is held responsible.').waitFor()
   await why.getByText('What began first').click()
   await why.getByRole('rowheader', { name: 'camera: camera exited' }).waitFor()
   for (const [width, height] of [[1024, 768], [1440, 900]]) {
@@ -340,6 +341,8 @@ async function tellsWhatWouldChange(page, server) {
     const hidden = await page.locator('.cause-first').evaluate((column) => column.scrollWidth - column.clientWidth)
     expect(hidden <= 0, `the right column is ${hidden} pixels too wide at ${width} pixels`)
   }
+  await become(page, server, kPausedLater, 'robot')
+  await why.getByText('camera hangs').first().waitFor()
 }
 
 // The robot is drawn where it is, for as long as somebody looks; what is old looks old.

@@ -64,8 +64,10 @@ const kSuspects = [
   { component: 'camera', failure: 'RGBDead', probability: 0.97, evidence: [evidence('kernel', 'camera exited', 0.02, 5.1), evidence('alarm', 'RGBDead fires', 0.01, 1.2)] },
   { component: 'fusion', failure: 'FusionSilent', probability: 0.03, evidence: [evidence('measured', 'fusion answered', 0.004, -2.3)] },
 ]
-// As above, where the decision hinges on one piece of evidence.
-export const hinging = (state) => ({ ...state, events: state.events.map((e) => (e.suspects ? { ...e, suspects: kSuspects.map((s) => ({ ...s, evidence: s.evidence.map((each) => (each.text === 'camera exited' ? { ...each, without: 'fusion' } : each)) })) } : e)) })
+// As above, where the decision hinges on one piece of evidence, and a wait has an end.
+const kEnd = 'if camera does not answer within 0.60 s, camera is held responsible'
+const ending = (candidates) => candidates?.map((each) => (each.excluded ? { ...each, excluded: { ...each.excluded, ends: kEnd } } : each))
+export const hinging = (state) => ({ ...state, events: state.events.map((e) => (e.suspects ? { ...e, candidates: ending(e.candidates), suspects: kSuspects.map((s) => ({ ...s, evidence: s.evidence.map((each) => (each.text === 'camera exited' ? { ...each, without: 'fusion' } : each)) })) } : e)) })
 const because = (failure) => ({ condition: 'dependency', component: 'camera', failure, text: `camera may be the cause, by ${failure}` })
 const candidate = (name, excluded = null) => ({ strategy: name, impact: 5, cost: excluded ? 0 : 0.55, value: 0.9, resolves: 0.9, excluded })
 const kAll = [candidate('rgb_restart', { condition: 'tried', text: 'it was tried already' }), candidate('rgb_redeploy')]
@@ -119,6 +121,10 @@ export const kStates = {
     cause: 'camera is down', level: 'Gave up', mode: 'Acting', also: ['nothing helped'] },
   deaf: { events: [], control: { hears: false }, state: { overview: { look: 'DEAF', headline: "culprit does not receive the robot's messages", detail: 'nothing is judged, and nothing is done' } }, cause: "Culprit does not receive the robot's messages", level: 'Unknown', mode: 'Deaf' },
 }
+// A person paused culprit after a strategy that did not help: the suspects are those of now.
+export const kPausedLater = { ...kStates.paused, events: [...kCameraDead, chosen(false),
+  event(kBroken + 5, 'strategy_failed', 'no help', 'warning', 'warning', 'rgb_redeploy did not help', { rule: 'RGBDead', strategy: 'rgb_redeploy' }),
+  { ...heldBack('paused by a person'), t: kBroken + 6, clock: kBegan + kBroken + 6, candidates: [candidate('rgb_redeploy')], suspects: [{ ...kSuspects[0], evidence: [evidence('measured', 'camera hangs', 2, 3.1)] }] }] }
 // It is over: 3 s later all of it was well. Names are only text.
 const kHealing = [...kCameraDead, chosen(false), ...kRules.map(({ name }) => event(kBroken + 3.01, 'failure_resolved', 'resolved', 'info', 'relief', `${name} resolved <b>rover</b>`, { rule: name, strategy: name === 'RGBDead' ? 'rgb_redeploy' : null, reaction_s: 3 })), event(kBroken + 3.01, 'incident_closed', 'incident', 'info', 'aside', '', { incident: kCause.id, rule: 'RGBDead', how: 'resolved' })]
 export const kHealed = { events: kHealing, control: {}, state: {} }

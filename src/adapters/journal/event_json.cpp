@@ -291,6 +291,8 @@ class EventWriter {
     if (candidate.excluded) {
       json_.member("excluded", culprit::to_string(*candidate.excluded));
       json_.member("because", describe_exclusion(candidate, rules_));
+      const std::string end = describe_end_of_wait(candidate, rules_);
+      if (!end.empty()) json_.member("ends", end);
     }
     json_.end_object();
   }

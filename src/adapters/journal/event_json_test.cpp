@@ -142,6 +142,15 @@ TEST(EventJson, RowsAreAsTheyHaveAlwaysBeen) {
   EXPECT_EQ(seen.size(), std::variant_size_v<EventWhat::Variant>) << "each has a sample";
 }
 
+TEST(EventJson, ARowSaysWhatWouldEndAWait) {
+  const RuleSet rules = *check(Source("test", kRules)).rules;
+  Candidate waits{StrategyId(0), 0.5, Condition::kSuspect, {}, std::nullopt, ""};
+  waits.within = 600ms;
+  const Json row = to_json(Event{Time(7ns), FailureHeldBack{RuleId(0), {waits}}}, rules);
+  EXPECT_EQ(row["candidates"][0]["ends"],
+            "if camera does not answer within 0.60 s, camera is held responsible");
+}
+
 TEST(EventJson, WhatIsReadBackIsWrittenAgainWithTheSameNames) {
   const RuleSet rules = *check(Source("test", kRules)).rules;
   std::size_t read = 0;

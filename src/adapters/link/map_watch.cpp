@@ -1,7 +1,6 @@
 #include "link/map_watch.h"
 
 #include <algorithm>
-#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -48,7 +47,8 @@ void MapWatch::follow(const std::vector<Topic>& topics, const std::string& wante
     if (part != kGrid) continue;
     const MutexLock lock(mutex_);
     topics_.clear();
-    for (const Topic& topic : found | std::views::take(kMostTopics)) topics_.push_back(topic.name);
+    for (std::size_t i = 0; i < std::min(found.size(), kMostTopics); ++i)
+      topics_.push_back(found[i].name);
   }
   const Qos latched{.durability = Durability::kTransientLocal, .depth = 100};
   listen(kTransforms, {"/tf", std::string(msg::TFMessage::kType), qos::kSensorData});
@@ -143,7 +143,8 @@ MapPicture MapWatch::picture(std::uint64_t known, Time now) {
 void MapWatch::add_robots(MapPicture& picture, Time now) const {
   std::vector<std::string> bases = frames_.called("base_link");
   if (bases.empty()) bases = frames_.called("base_footprint");
-  for (const std::string& base : bases | std::views::take(kMostBases)) {
+  if (bases.size() > kMostBases) bases.resize(kMostBases);
+  for (const std::string& base : bases) {
     const auto placed = frames_.place(base, frame_, now);
     if (!placed || picture.robots.size() == kMostRobots) continue;
     const auto& [t, rotation] = placed->transform;

@@ -15,6 +15,7 @@
 #include "base/live_clock.h"
 #include "ros2/fast_dds.h"
 #include "ros2/live_test.h"
+#include "ros2/service_server.h"
 #include "ros2/type_description.h"
 
 namespace culprit::ros2 {
@@ -277,6 +278,13 @@ TEST(Participant, ItsEndpointsRepeatThemselvesAtMostFifteenTimesASecond) {
   EXPECT_GE(reader.initialAcknackDelay.to_ns(), 1'000'000'000 / 15);
   const auto writer = fast_dds::writer_qos(qos, "").reliable_writer_qos().times;
   EXPECT_GE(writer.heartbeatPeriod.to_ns(), 1'000'000'000 / 15);
+}
+
+// Else the reply may be announced by the same heartbeat as its greeting, and Cyclone drops both.
+TEST(Participant, ItsHeartbeatsAskFiveTimesWhetherAGreetingCame) {
+  const auto writer = fast_dds::writer_qos(qos::kServices, "").reliable_writer_qos().times;
+  EXPECT_LE(5 * writer.heartbeatPeriod.to_ns(),
+            std::chrono::nanoseconds(ServiceServer::kLongestGreeting).count());
 }
 
 TEST(Participant, MatchesAreToldAndLost) {

@@ -13,9 +13,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kLongestWait = 5s;
-// While a killed client does not acknowledge, until its lease ends, it is unknown when a new one
-// did.
-constexpr auto kLongestGreeting = 200ms;
 constexpr auto kBetweenLooks = 1ms;
 
 }  // namespace

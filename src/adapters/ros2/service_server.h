@@ -6,6 +6,7 @@
 // loses replies.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <map>
@@ -42,6 +43,10 @@ class ServiceServer {
   // it comes after the server was destroyed, it is dropped.
   using Answer = std::function<void(Bytes reply)>;
   using SlowHandler = std::function<void(ByteView request, Answer answer)>;
+  // A first reply to a client on Cyclone waits so long for the acknowledgement of its greeting (service_mapping.h): for several
+  // heartbeats, since a busy computer delays them and Wi-Fi loses some. Then it is sent in any case. While a killed client does
+  // not acknowledge, until its lease ends, it is unknown when a new one did.
+  static constexpr std::chrono::milliseconds kLongestGreeting{500};
 
   // The node entry outlives the server.
   static Expected<std::unique_ptr<ServiceServer>> create(NodeEntry& node,

@@ -62,7 +62,7 @@ class Analyzer {
   static constexpr Duration kInputs = std::chrono::seconds(14);
   // A failure that is back within so long may be an effect that its cause brought back.
   static constexpr Duration kRecurs = std::chrono::seconds(5);
-  // The same of one that a strategy of its own had cleared. Later it begins anew.
+  // A failure that its own strategy cleared goes on if it is back within so long; later it begins anew.
   static constexpr Duration kOutlasts = std::chrono::seconds(2);
   // A failure that came so often, each time before it was proven gone, flaps.
   static constexpr int kFlaps = 3;

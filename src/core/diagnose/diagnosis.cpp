@@ -77,15 +77,20 @@ bool Diagnosis::is_known_dead(std::size_t i) const {
 }
 
 bool Diagnosis::hangs_by_itself(std::size_t i) const {
-  if (!is_about_hang(causes_[i].rule, knowledge_)) return false;
-  bool may_wait = false;
+  return is_about_hang(causes_[i].rule, knowledge_) && knowledge_.now >= may_wait_until(i);
+}
+
+Time Diagnosis::may_wait_until(std::size_t i) const {
+  Time until = kLongAgo;
   for_each(causes_.causes(i), [&](std::size_t j) {
     const CauseNode& cause = causes_[j];
-    may_wait |= cause.is_rule()
-                    ? is_known_dead(j) || is_about_hang(cause.rule, knowledge_)
-                    : cause.kind == CauseNode::Kind::kTrouble && answers_nothing(cause.trouble);
+    if (cause.is_rule() && (is_known_dead(j) || is_about_hang(cause.rule, knowledge_)))
+      until = kNever;
+    if (cause.kind == CauseNode::Kind::kTrouble && answers_nothing(cause.trouble))
+      until = std::max(until, may_wait_for_answer_until(causes_[i].rule, cause.component,
+                                                        cause.onset.latest, knowledge_));
   });
-  return !may_wait;
+  return until;
 }
 
 bool Diagnosis::is_enough(std::size_t j, std::size_t i) const {

@@ -60,6 +60,9 @@ class Diagnosis {
   double prior(std::size_t i) const { return prior_[i]; }
   // kappa(j -> i)
   double kappa(std::size_t j, std::size_t i) const;
+  // Until when the process that node i is about may hang only because a supplier answers nothing. kLongAgo:
+  // none is down; kNever: as long as one is.
+  Time may_wait_until(std::size_t i) const;
   // X_i
   double explained(std::size_t i) const;
   // Is j alone enough for i to have no cause of its own, more likely than not?

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "diagnose/examination.h"
+#include "diagnose/known_down.h"
 #include "plan/bayes/test_scene.h"
 
 namespace culprit::diagnose {
@@ -230,6 +231,27 @@ TEST(Diagnosis, ASupplierCountsWithoutARule) {
   EXPECT_DOUBLE_EQ(own(scene, "B"), 1) << "it worked without";
   scene->components[a].lifecycle = Lifecycle::kActive;
   EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
+}
+
+// A process that hangs may wait for an answer. If no rule repairs the supplier, the hang counts as its own in the end, once.
+TEST(Diagnosis, AHangThatLastsIsItsOwnAlthoughASupplierIsDown) {
+  const auto own_after = [](const std::string& supplier, Duration time, int attempts) {
+    Scene scene(supplier + failure_of("b", "B"));
+    scene.link("a", "b").fail("B");
+    scene.process("a", ProcessState::kGone);
+    ComponentState& b = scene->components[scene.component("b")];
+    b.in_graph = true;
+    b.alive = false;
+    RuleState& state = scene->states.state(scene.rule("B"));
+    state.search.attempts = attempts;
+    scene->now = later(state.failing_since, time);
+    return own(scene, "B");
+  };
+  const std::string unwatched = "COMPONENT a NODE /a\n";
+  EXPECT_LT(own_after(unwatched, kLongestWaitForAnswer - 1s, 0), 0.5);
+  EXPECT_GT(own_after(unwatched, kLongestWaitForAnswer, 0), 0.5);
+  EXPECT_LT(own_after(unwatched, kLongestWaitForAnswer, 1), 0.5) << "that was tried in vain";
+  EXPECT_LT(own_after(failure_of("a", "A"), 1h, 0), 0.5) << "a rule repairs the supplier";
 }
 
 std::string about_states(const std::string& trigger, const std::string& adaptations) {

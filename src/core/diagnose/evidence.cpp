@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "diagnose/known_down.h"
 #include "diagnose/touched.h"
@@ -40,14 +42,21 @@ class Collector {
       : otherwise_(otherwise),
         causes_(found.causes()),
         diagnosis_(found.diagnosis()),
+        troubles_(found.troubles()),
         knowledge_(knowledge) {}
 
   std::vector<PieceOfEvidence> own(std::size_t i) {
     const double explained = diagnosis_.explained(i);
     for (const ComponentId c : touched_by(causes_[i].rule, knowledge_)) {
-      if (is_known_down(causes_[i].rule, knowledge_) && is_known_down(c, knowledge_))
+      if (is_known_down(causes_[i].rule, knowledge_)) {
+        if (!is_known_down(c, knowledge_)) continue;
         add(EvidenceSource::kKernel, name(c) + " exited or is stopped",
             knowledge_.components[c].process_since, logit(kKnownDown));
+      } else if (explained > 0 && diagnosis_.prior(i) > 0.5 && knowledge_.components[c].hangs()) {
+        const auto& trouble = troubles_[c.index];
+        add(EvidenceSource::kMeasured, name(c) + " hangs by itself",
+            trouble ? trouble->onset.latest : kLongAgo, logit(kKnownDown));
+      }
     }
     if (all_.size() == 1) change(otherwise_.with_prior(kCoincidence));
     if (explained <= 0) {
@@ -138,6 +147,7 @@ class Collector {
   const Otherwise& otherwise_;
   const Causes& causes_;
   const Diagnosis& diagnosis_;
+  std::span<const std::optional<TroubleSeen>> troubles_;  // by component
   const Knowledge& knowledge_;
   std::vector<PieceOfEvidence> all_;
 };

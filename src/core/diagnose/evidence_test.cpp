@@ -67,6 +67,16 @@ TEST_F(EvidenceFor, AProcessThatIsGoneIsProof) {
   EXPECT_GT(own.front().log_odds, 2);
 }
 
+// An alarm upstream makes no process hang.
+TEST_F(EvidenceFor, AProcessThatHangsByItselfIsEvidence) {
+  scene_.fail("A").fail("B");
+  ComponentState& b = scene_->components[scene_.component("b")];
+  b.in_graph = true;
+  b.alive = false;
+  EXPECT_THAT(texts("B", "B"), ElementsAre(StartsWith("b hangs by itself"),
+                                           StartsWith("causes do not always pass on (model, +")));
+}
+
 TEST_F(EvidenceFor, ASupplierInTroubleNeedsNoRule) {
   scene_.fail("C");
   scene_.process("b", ProcessState::kGone);

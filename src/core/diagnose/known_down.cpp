@@ -38,4 +38,12 @@ bool is_about_hang(RuleId rule, const Knowledge& knowledge) {
   });
 }
 
+Time may_wait_for_answer_until(RuleId failure, ComponentId supplier, Time since,
+                               const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[failure];
+  const bool has_end = knowledge.states.is_active(failure) && state.search.attempts == 0 &&
+                       knowledge.states.touching(supplier).empty();
+  return has_end ? later(std::max(state.failing_since, since), kLongestWaitForAnswer) : kNever;
+}
+
 }  // namespace culprit::diagnose

@@ -254,6 +254,18 @@ std::string Incidents::unheard_host(RuleId root, const Knowledge& knowledge) con
   return "";
 }
 
+// The supplier that is down, that the failure waits for, and that no rule is about.
+std::optional<ComponentId> Incidents::supplier_down(RuleId root, const Knowledge& knowledge) const {
+  const Failure& failure = of(root);
+  if (!failure.is_held_back) return std::nullopt;
+  for (const Candidate& each : failure.candidates) {
+    if (each.excluded == Condition::kDependency && !each.failure &&
+        !condition_of(knowledge.components[each.component]).empty())
+      return each.component;
+  }
+  return std::nullopt;
+}
+
 void Incidents::blame(Incident& incident, const Knowledge& knowledge) const {
   const RuleSet& rules = knowledge.rules;
   incident.host = unheard_host(incident.root, knowledge);
@@ -264,6 +276,10 @@ void Incidents::blame(Incident& incident, const Knowledge& knowledge) const {
   }
   incident.is_certain = !incident.host.empty();
   if (incident.is_certain) return;
+  if (const auto supplier = supplier_down(incident.root, knowledge)) {
+    incident.components = {*supplier};
+    return;
+  }
   const Failure& root = of(incident.root);
   if (root.blamed && !rules[*root.blamed].components.empty()) {
     incident.components = rules[*root.blamed].components;

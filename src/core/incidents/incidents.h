@@ -75,6 +75,7 @@ class Incidents {
   std::optional<RuleId> upstream_of(RuleId rule, const std::vector<RuleId>& all) const;
   RuleId root_of(RuleId rule, const std::vector<RuleId>& all) const;
   std::string unheard_host(RuleId root, const Knowledge& knowledge) const;
+  std::optional<ComponentId> supplier_down(RuleId root, const Knowledge& knowledge) const;
   void blame(Incident& incident, const Knowledge& knowledge) const;
   std::vector<Incident> found(const Knowledge& knowledge) const;
   void describe_all(std::vector<Incident>& all, const Knowledge& knowledge,

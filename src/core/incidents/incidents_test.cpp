@@ -313,6 +313,25 @@ struct Told {
   const RuleId fusion{1};
 };
 
+// The client hangs, too, and its own rule could replace it: a person has to know of the supplier all the same.
+TEST(Incidents, NameASupplierThatIsDownAndThatNoRuleRepairs) {
+  Told told;
+  ComponentState& fusion = told.knowledge.components[ComponentId(1)];
+  fusion.in_graph = true;
+  fusion.alive = false;
+  ComponentState& lamp = told.knowledge.components[ComponentId(2)];
+  lamp.process = ProcessState::kGone;
+  lamp.alive = false;
+  const Candidate waits{StrategyId(1), 0,       Condition::kDependency, ComponentId(2),
+                        std::nullopt,  "exited"};
+  told.after({told.fusion}, {FailureHeldBack{told.fusion, {waits}}});
+  ASSERT_EQ(told.incidents.open().size(), 1u);
+  const Incident& incident = told.incidents.open().front();
+  EXPECT_EQ(incident.headline, "lamp is down");
+  EXPECT_EQ(told.incidents.course_of(incident, told.knowledge, Incidents::Halt::kNone).next,
+            "a person must look: no rule of these failures acts on lamp");
+}
+
 TEST(Incidents, AreKnownAgainByTheirRoots) {
   Told told;
   const StrategyId redeploy = told.rules[told.camera].strategies[0];

@@ -652,4 +652,30 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
   return "";
 }
 
+std::string describe_end_of_wait(const Candidate& candidate, const RuleSet& rules) {
+  if (!candidate.excluded || !candidate.within) return "";
+  const std::string time = two_decimals(seconds(*candidate.within)) + " s";
+  const std::string& component = rules[candidate.component].name;
+  const Strategy& strategy = rules[candidate.strategy];
+  std::vector<std::string> own;
+  for (const ComponentId c : strategy.components) own.push_back(rules[c].name);
+  const std::string are_responsible =
+      listed(own) + (own.size() == 1 ? " is" : " are") + " held responsible";
+  switch (*candidate.excluded) {
+    case Condition::kDependency:
+      return "if " + component + " is not back within " + time + ", " + are_responsible;
+    case Condition::kSuspect:
+      if (!candidate.failure)
+        return "if " + component + " does not answer within " + time + ", " + component +
+               " is held responsible";
+      return "if " + rules[*candidate.failure].name + " does not fire within " + time + ", " +
+             are_responsible;
+    case Condition::kSettling:
+      return "if " + rules[strategy.rule].name + " still fails after " + time + ", " +
+             are_responsible;
+    default:
+      return "";
+  }
+}
+
 }  // namespace culprit

@@ -44,5 +44,8 @@ std::string describe(const Event& event, const RuleSet& rules);
 // Why a candidate was not chosen: "sensor_fusion depends on camera, which may be the cause
 // (RGBDead)".
 std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules);
+// The event that would end its wait, and its consequence: "if camera does not answer within 0.60 s, camera is held
+// responsible". Empty if its wait has no known end.
+std::string describe_end_of_wait(const Candidate& candidate, const RuleSet& rules);
 
 }  // namespace culprit

@@ -50,6 +50,8 @@ struct Candidate {
   // Of a planner that weighs them (bayes) and only if nothing excludes it beforehand.
   double resolves = 0;  // the probability that it resolves the failure
   double value = 0;     // what that is worth, before its cost
+  // kDependency, kSuspect, kSettling: it waits no longer than this after the decision, if that is known.
+  std::optional<Duration> within{};
 
   bool operator==(const Candidate&) const = default;
 };

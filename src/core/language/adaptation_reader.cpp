@@ -125,15 +125,13 @@ class AdaptationReader {
         return take_name(adaptation.subject, "the mode");
       case kCall:
         if (!take_name(adaptation.subject, "the service")) return false;
-        if (const Name& service = adaptation.subject;
-            !service.text.starts_with('/') && !service.text.starts_with('~') &&
-            service.text.find("/srv/") != std::string::npos)
+        if (const Name& service = adaptation.subject; names_type(service.text))
           return read_.fail(Code::kSyntax, service.span,
                             "this is the type of a service, and no name",
                             "write the name that ros2 service list shows, as in ~/enable");
         if (s.peek().kind == Token::Kind::kString)
           adaptation.request = read_.text(s, "the request", "");
-        if (names_type(s)) return false;
+        if (has_type(s)) return false;
         if (const Token& next = s.peek(); next.kind == Token::Kind::kIdentifier
                                               ? !source_.text(next.span).starts_with('{')
                                               : source_.text(next.span) == "{")
@@ -152,14 +150,20 @@ class AdaptationReader {
     return false;
   }
 
+  // "std_srvs/srv/Trigger"; a service itself may be called /lidar/srv/enable.
+  static bool names_type(std::string_view word) {
+    return word.find("/srv/") != std::string_view::npos && word.front() != '/' &&
+           word.front() != '~';
+  }
+
   // "call /reset std_srvs/srv/Trigger 5": reported.
-  bool names_type(const Scanner& s) {
+  bool has_type(const Scanner& s) {
     Scanner ahead = s.ahead();
     const bool is_word = ahead.peek().kind == Token::Kind::kIdentifier;
     const Name type = ahead.next_name();
-    const bool is_type = is_word && type.text.find("/srv/") != std::string::npos;
-    return is_type && !read_.fail(Code::kSyntax, type.span, "a call names no type of service",
-                                  "remove it", Edit{{type.span.begin, ahead.position()}, ""});
+    return is_word && names_type(type.text) &&
+           !read_.fail(Code::kSyntax, type.span, "a call names no type of service", "remove it",
+                       Edit{{type.span.begin, ahead.position()}, ""});
   }
 
   // "increase_parameter gain 10% 2": reported.

@@ -168,18 +168,6 @@ RULE R
   EXPECT_EQ(rules.heaviest, Cycles{12});
 }
 
-// Only a name without its beginning is a type, as in std_srvs/srv/Trigger.
-TEST(Checker, AServiceMayStandInANamespaceThatIsCalledSrv) {
-  for (const std::string service : {"~/srv/reset", "/driver/srv/reset"}) {
-    const RuleSet rules = rules_of(
-        "COMPONENT driver NODE /driver\nRULE R\nPOLICIES ERROR\nTRIGGER !alive(driver)\n"
-        "STRATEGY s 50 10\nADAPTATION driver call " +
-        service + " 5\n");
-    ASSERT_EQ(rules.strategies.size(), 1u) << service;
-    EXPECT_EQ(rules.strategies[0].adaptations[0].subject, service);
-  }
-}
-
 TEST(Checker, AcceptsTheAliasesOfCriticality) {
   for (const auto& [word, level] : {std::pair{"OK", Criticality::kNonCritical},
                                     {"DEGRADED", Criticality::kWarning},
@@ -322,6 +310,25 @@ TEST(Checker, RefusesRunTimeValuesWhereConstantsBelong) {
   EXPECT_EQ(codes_of("COMPONENT c\nRULE r\n  POLICIES ERROR\n  TRIGGER rate(/t, age(/t)) < 1\n"
                      "    STRATEGY s 50 10\n      ADAPTATION c restart 5\n"),
             std::vector<std::string>{"R020"});
+}
+
+TEST(Checker, TakesAWholeNameForAServiceEvenIfItLooksLikeAType) {
+  for (const std::string service : {"/lidar/srv/enable", "~/srv/enable"}) {
+    const RuleSet rules = rules_of(
+        "COMPONENT lidar NODE /lidar\nRULE Dead\n  POLICIES ERROR\n  TRIGGER !alive(lidar)\n"
+        "    STRATEGY again 50 10\n      ADAPTATION lidar call " +
+        service + " 5\n");
+    EXPECT_EQ(rules.rules.size(), 1u) << service;
+  }
+}
+
+TEST(Checker, SuggestsNoTextWithinATextAndNoCallAroundOne) {
+  const Source source("test.rules",
+                      "SIGNAL heat DIAGNOSTIC \"left motor\" front KEY heat\n"
+                      "RULE R\n  POLICIES ERROR REPORT\n  TRIGGER state == \"a\"|\"b\"|\"c\"\n");
+  const std::string messages = all_messages(source, check(source));
+  EXPECT_EQ(messages.find("write \"\""), std::string::npos) << messages;
+  EXPECT_EQ(messages.find("abs("), std::string::npos) << messages;
 }
 
 TEST(Checker, SeesCirclesWhateverTheComponentsAreCalled) {

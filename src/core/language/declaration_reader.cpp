@@ -334,7 +334,8 @@ bool DeclarationReader::is_status_whole(const Scanner& s, const Name& status) {
   Span span = status.span;
   while (ahead.peek().kind == Token::Kind::kIdentifier && ahead.peek().text != "KEY")
     span.end = ahead.next().span.end;
-  if (span.end == status.span.end || ahead.peek().text != "KEY") return true;
+  const bool is_quoted = source_.text(status.span).starts_with('"');
+  if (span.end == status.span.end || is_quoted || ahead.peek().text != "KEY") return true;
   const std::string quoted = "\"" + std::string(source_.text(span)) + "\"";
   return read_.fail(Code::kSyntax, span, "blanks stand in a name only in quotes", "write " + quoted,
                     Edit{span, quoted});

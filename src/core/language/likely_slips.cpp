@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <set>
+#include <string_view>
 
 namespace culprit {
 namespace {
@@ -140,15 +142,15 @@ void check_shell(const syntax::Component& written, const Component& component,
 
 void check_topics_as_components(const syntax::File& file, const RuleSet& rules,
                                 std::vector<Diagnostic>& diagnostics) {
+  std::set<std::string_view> topics;
+  for (const Topic& topic : rules.topics) topics.insert(topic.name);
   // A node may be called like a topic, but then it is declared: first, in the order of the file.
+  for (std::size_t i = 0; i < file.components.size(); ++i) {
+    topics.erase(rules.components[i].node);
+    for (const std::string& node : rules.components[i].other_nodes) topics.erase(node);
+  }
   const auto check = [&](const syntax::Name& name) {
-    if (!name.text.starts_with('/')) return;
-    const bool is_topic =
-        std::ranges::find(rules.topics, name.text, &Topic::name) != rules.topics.end();
-    bool is_declared = false;
-    for (std::size_t i = 0; i < file.components.size(); ++i)
-      is_declared |= rules.components[i].has_node(name.text);
-    if (!is_topic || is_declared) return;
+    if (!topics.contains(name.text)) return;
     diagnostics.push_back({Code::kUnknownName, Severity::kWarning, name.span,
                            "'" + name.text + "' is a topic of these rules, and no component",
                            "write the component that publishes it"});

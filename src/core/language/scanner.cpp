@@ -140,7 +140,7 @@ bool is_utf8(std::string_view character) {
 
 // "|heat|" -> "heat"; empty: `rest` begins with something else.
 std::string between_bars(std::string_view rest) {
-  const auto end = rest.find_first_of("| \t&<>=\n", 1);
+  const auto end = rest.find_first_of("| \t&<>=\"\n", 1);
   const bool is_so = rest[0] == '|' && end != std::string_view::npos && end > 1 && rest[end] == '|';
   return is_so ? std::string(rest.substr(1, end - 1)) : "";
 }

@@ -422,7 +422,7 @@ def failure_neighbours(signals, failure, all_readings, alpha):
     """The signals that no other ones separate from the failure (the PC algorithm), the most significant first."""
     weakest = dict.fromkeys(signals, 0.0)  # the largest p of each
     size = 0
-    while size < len(weakest):
+    while size < min(len(weakest), CHUNK):  # chunks that separate nothing leave many signals to the last stage
         for c in list(weakest):
             for given in itertools.combinations([other for other in weakest if other != c], size):
                 p = independence_p(signals[c], failure, [signals[other] for other in given], all_readings)

@@ -32,7 +32,8 @@ std::vector<OnsetRow> rows_of_events(const std::vector<Json>& events) {
   std::set<std::pair<std::string, std::string>> known;
   for (const Json& event : events) {
     if (journal::text_of(event, "type") == "failure_detected")
-      rows.push_back({clock_of(event), journal::text_of(event, "rule"), "detected", "ERROR"});
+      rows.push_back(
+          {clock_of(event), journal::text_of(event, "rule"), "detected", criticality_class(event)});
     for (const Json& suspect : list_in(event, "suspects")) {
       const std::string who = journal::text_of(suspect, "component");
       for (const Json& each : list_in(suspect, "evidence")) {
@@ -72,7 +73,9 @@ std::string onsets_of(const std::vector<Json>& events, double end) {
     cells += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"onset\">{}</td></tr>\n",
                          on_clock(row.at), xml_escaped(row.who), xml_escaped(row.text),
                          dot_at(row, begin, std::max(end, rows.back().at)));
-  return "<h2>What began first</h2>\n" +
+  return "<h2>What began first</h2>\n"
+         "<p class=\"note\">Filled: a failure, or evidence for a cause. Hollow: evidence against "
+         "it.</p>\n" +
          table_of(
              {"from", "component or rule", "what culprit saw",
               fmt::format("{} to {}", on_clock(begin), on_clock(std::max(end, rows.back().at)))},
@@ -86,7 +89,7 @@ std::string evidence_of(const Json& decision) {
     for (const Json& each : list_in(suspect, "evidence")) {
       const std::int64_t age = journal::integer_of(each, "age_ns", -1);
       rows += row_of({safe_text(suspect, "component"), safe_text(each, "text"),
-                      age < 0 ? "" : lasting_text(1e-9 * static_cast<double>(age)),
+                      age < 0 ? "" : lasting_text(1e-9 * static_cast<double>(age)) + " before",
                       safe_text(each, "source"),
                       fmt::format("{:+.1f}", journal::number_of(each, "log_odds"))});
       if (const std::string without = safe_text(each, "without"); !without.empty())
@@ -95,7 +98,7 @@ std::string evidence_of(const Json& decision) {
     }
   }
   if (rows.empty()) return "";
-  return table_of({"suspect", "evidence", "for", "source", "log-odds"}, rows) + hinges;
+  return table_of({"suspect", "evidence", "since", "source", "log-odds"}, rows) + hinges;
 }
 
 }  // namespace culprit::incident_reports

@@ -19,6 +19,9 @@ void tell_exclusions(Json& event) {
     candidate["excluded"] = nullptr;
     if (!condition.empty()) candidate["excluded"] = {{"condition", condition}, {"text", because}};
     candidate.erase("because");
+    const std::string end = journal::text_of(candidate, "ends");
+    if (!end.empty()) candidate["excluded"]["ends"] = end;
+    candidate.erase("ends");
   }
 }
 

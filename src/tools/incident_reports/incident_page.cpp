@@ -23,7 +23,7 @@ body{background:var(--surface);color:var(--text);font:15px/1.5 system-ui,sans-se
 table{border-collapse:collapse;width:100%;margin:.4rem 0 1rem}td,th{text-align:left;vertical-align:top;padding:.2rem .8rem .2rem 0;border-bottom:1px solid var(--faint)}
 th{font-weight:600}time,td:first-child,th[scope=row]{font-variant-numeric:tabular-nums;white-space:nowrap}
 svg{display:block;width:100%;height:auto;background:var(--raised);border-radius:6px}text{fill:var(--text);font-size:12px}line{stroke:var(--faint)}
-.onset{width:40%}.onset line{stroke:var(--muted)}.for{fill:var(--error)}.against{fill:var(--ok)}
+.onset{width:40%}.onset line{stroke:var(--muted)}.for{fill:var(--error)}.against{fill:var(--surface);stroke:var(--ok);stroke-width:2}
 .ERROR{fill:var(--error)}.WARNING{fill:var(--warning)}.NON_CRITICAL{fill:var(--note)}
 figure{margin:0 0 .9rem;break-inside:avoid}figcaption{margin-bottom:.15rem}.why,.note{color:var(--muted)}
 .curve{fill:none;stroke:var(--accent);stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}.limit{stroke:var(--warning);stroke-dasharray:5 4}
@@ -68,13 +68,10 @@ class CourseOfRules {
     return kNames + (at - begin) / (end_ + margin_ - begin) * (kWide - kEdge - kNames);
   }
   std::string bar(const Json& from, double to, double y) const {
-    // The class is one of a few words: a word of a stranger is none of them.
-    std::string criticality = journal::text_of(from, "criticality");
-    if (criticality != "ERROR" && criticality != "WARNING") criticality = "NON_CRITICAL";
     const double left = x(clock_of(from));
     return fmt::format(
         "<rect class=\"{}\" x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" rx=\"2\"/>",
-        criticality, left, y + 5, std::max(3.0, x(to) - left), kRowHigh - 10);
+        criticality_class(from), left, y + 5, std::max(3.0, x(to) - left), kRowHigh - 10);
   }
   std::string course_of(const std::string& rule, double y) const {
     std::string bars;

@@ -116,13 +116,16 @@ TEST_F(IncidentPage, ReportsTheBlameTheDecisionAndTheRecording) {
 
 TEST_F(IncidentPage, ShowsTheEvidenceOnOneTimeAxis) {
   const std::string html = incident_page(page_of_rover());
-  for (const char* text : {"What began first", "09:59:58.500", "drive is stopped", "kernel", "+2.9",
-                           "1.5 s", "class=\"for\"", "one stayed before", "-1.2",
-                           "Without “drive is stopped”, <b>lidar</b> would be held responsible"})
+  for (const char* text :
+       {"What began first", "09:59:58.500", "drive is stopped", "kernel", "+2.9", "1.5 s before",
+        "class=\"for\"", "<circle class=\"ERROR\"", "Hollow: evidence against", "one stayed before",
+        "-1.2", "Without “drive is stopped”, <b>lidar</b> would be held responsible"})
     EXPECT_THAT(html, HasSubstr(text));
   EXPECT_LT(html.find("09:59:58.500"), html.find("10:00:00.000</td><td>TooFast"))
       << "the earliest first";
   PageContent content = page_of_rover();
+  content.events[0]["criticality"] = "WARNING";
+  EXPECT_THAT(incident_page(content), HasSubstr("<circle class=\"WARNING\""));
   content.events[1].erase("suspects");
   EXPECT_THAT(incident_page(content), Not(HasSubstr("What began first")));
 }

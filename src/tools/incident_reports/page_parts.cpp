@@ -54,6 +54,11 @@ const Json& list_in(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_array() ? *found : kNone;
 }
+const char* criticality_class(const Json& event) {
+  const std::string criticality = journal::text_of(event, "criticality");
+  if (criticality == "ERROR") return "ERROR";
+  return criticality == "WARNING" ? "WARNING" : "NON_CRITICAL";
+}
 double clock_of(const Json& event) { return journal::number_of(event, "clock"); }
 
 }  // namespace culprit::incident_reports

@@ -18,6 +18,8 @@ std::string time_zone(double clock);    // "UTC+01:00"
 std::string safe_text(const Json& json, const char* key);
 // Empty if there is none.
 const Json& list_in(const Json& json, const char* key);
+// A class of the page's style, for the criticality of an event: one of three. A word of a stranger is none of them.
+const char* criticality_class(const Json& event);
 // The time of an event, in seconds since 1970.
 double clock_of(const Json& event);
 

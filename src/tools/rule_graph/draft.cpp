@@ -133,10 +133,15 @@ void mark(const std::vector<Diagnostic>& said, const Statements& statements, Dra
   mark_as(Statements::Kind::kRule, draft.graph.rules);
 }
 
-bool is_too_much(std::size_t drawn) { return drawn > kMostDrawn; }
-Error too_much() {
-  return {"the graph is not drawn: these are more than " + std::to_string(kMostDrawn) +
-          " components and rules"};
+Error too_much(std::size_t most, const char* what) {
+  return {"the graph is not drawn: these are more than " + std::to_string(most) + what};
+}
+
+// Error: too much to draw.
+Expected<void> fits(std::size_t nodes, std::size_t dependencies) {
+  if (nodes > kMostDrawn) return too_much(kMostDrawn, " components and rules");
+  if (dependencies > kMostDependencies) return too_much(kMostDependencies, " dependencies");
+  return {};
 }
 
 }  // namespace
@@ -149,7 +154,8 @@ Expected<Draft> graph_of_draft(const Expansion& rules) {
   }
   Parsed whole = parse_whole(rules.source);
   const syntax::File written = whole.file;
-  if (is_too_much(written.components.size() + written.rules.size())) return too_much();
+  if (auto few = fits(written.components.size() + written.rules.size(), 0); !few)
+    return Error{few.error()};
   Checked checked = check(rules, whole);
   const std::vector<Diagnostic> said = checked.diagnostics;
   for (int round = 0; !checked.rules && round < kMostRounds; ++round) {
@@ -158,9 +164,10 @@ Expected<Draft> graph_of_draft(const Expansion& rules) {
     checked = check(rules, whole);
   }
   if (checked.rules) {
-    if (is_too_much(checked.rules->components.size() + checked.rules->rules.size()))
-      return too_much();
-    draft.graph = graph_of(*checked.rules, rules.source);
+    const RuleSet& all = *checked.rules;
+    if (auto few = fits(all.components.size() + all.rules.size(), all.dependencies.size()); !few)
+      return Error{few.error()};
+    draft.graph = graph_of(all, rules.source);
   }
   add_left_out(written, rules.source, draft.graph);
   mark(said, Statements(written, rules.source), draft);

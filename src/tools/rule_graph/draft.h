@@ -13,10 +13,11 @@ struct Draft {
   std::size_t warnings = 0;
 };
 
-// The most components and rules of a draft, together.
+// The most components and rules of a draft, together, and the most dependencies: the failure of each rule spreads along them.
 inline constexpr std::size_t kMostDrawn = 2000;
+inline constexpr std::size_t kMostDependencies = 20'000;
 
-// The graph is empty if the text cannot be put together (INCLUDE, USE). Errors: more than kMostDrawn.
+// The graph is empty if the text cannot be put together (INCLUDE, USE). Errors: more than these.
 Expected<Draft> graph_of_draft(const Expansion& rules);
 
 }  // namespace culprit::rule_graph

@@ -109,6 +109,17 @@ TEST(Draft, IsNotDrawnIfItIsTooLarge) {
   EXPECT_THAT(draft.error(), HasSubstr("more than 2000"));
 }
 
+TEST(Draft, IsNotDrawnIfItHasTooManyDependencies) {
+  constexpr int kMany = 150;  // of either side: 22,500 dependencies
+  std::string all;
+  for (int i = 0; i < kMany; ++i) all += " b" + std::to_string(i);
+  std::string text;
+  for (int i = 0; i < kMany; ++i) text += "DEPENDENCY a" + std::to_string(i) + " ON" + all + "\n";
+  const auto draft = graph_of_draft(expand(Source("rules", text)));
+  ASSERT_FALSE(draft);
+  EXPECT_THAT(draft.error(), HasSubstr("20000 dependencies"));
+}
+
 TEST(Draft, OfNothingIsEmpty) {
   EXPECT_TRUE(drawn("").graph.components.empty());
   EXPECT_TRUE(drawn("RULE\nRULE\n").graph.rules.empty());

@@ -221,6 +221,8 @@ Json exclusion_as_json(const Candidate& candidate, const RuleSet& rules) {
   if (is_about_component) json["component"] = rules[candidate.component].name;
   if (candidate.failure) json["failure"] = rules[*candidate.failure].name;
   json["text"] = describe_exclusion(candidate, rules);
+  const std::string end = describe_end_of_wait(candidate, rules);
+  if (!end.empty()) json["ends"] = end;
   return json;
 }
 

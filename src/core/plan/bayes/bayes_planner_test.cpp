@@ -444,8 +444,25 @@ TEST(BayesPlanner, LeavesAFailureAloneForAsLongAsSuchFailuresTookToClear) {
   EXPECT_EQ(scene.candidate("A.restart").excluded, Condition::kSettling);
   EXPECT_EQ(describe_exclusion(scene.candidate("A.restart"), scene.rules()),
             "such failures often clear by themselves");
+  EXPECT_EQ(describe_end_of_wait(scene.candidate("A.restart"), scene.rules()),
+            "if A still fails after 1.00 s, a is held responsible");
   scene.fail("A", 4s);  // 6 s ago
   EXPECT_EQ(scene.plan(kBalanced), "A.restart");
+}
+
+// It may wait for an answer of a, which no rule repairs.
+TEST(BayesPlanner, SaysHowLongAHangWaitsForItsSupplier) {
+  Scene scene("COMPONENT a NODE /a\n" + failure_of("b", "B"));
+  scene.link("a", "b").fail("B");  // 10 s ago
+  scene.process("a", ProcessState::kGone);
+  ComponentState& b = scene->components[scene.component("b")];
+  b.in_graph = true;
+  b.alive = false;
+  EXPECT_EQ(scene.plan(kBalanced), "");
+  EXPECT_EQ(describe_end_of_wait(scene.candidate("B.redeploy"), scene.rules()),
+            "if a is not back within 50.00 s, b is held responsible");
+  scene->now += 50s;
+  EXPECT_NE(scene.plan(kBalanced), "");
 }
 
 TEST(BayesPlanner, LeavesNoFailureAloneThatIsProvenOrRarelyClearsOrComesBack) {

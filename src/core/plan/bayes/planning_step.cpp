@@ -262,6 +262,13 @@ void PlanningStep::await_answers() {
     if (!questions.awaited) continue;
     exclude(*weighed, {Condition::kSuspect, *questions.awaited, {}});
     weighed->candidate.remark = "asked whether it answers";
+    // One that never answered is not taken to hang.
+    const ComponentState& asked = knowledge_.components[*questions.awaited];
+    if (!asked.answers_probes) continue;
+    const bool is_asked_now = std::ranges::find(asks_[weighed->failure], *questions.awaited) !=
+                              asks_[weighed->failure].end();
+    const Time since = is_asked_now ? knowledge_.now : asked.questioned.at;
+    weighed->candidate.within = later(since, kLongestQuestion) - knowledge_.now;
   }
 }
 

@@ -46,8 +46,10 @@ void ReasonsToWait::look_at(WeighedCandidate& weighed, double chance) const {
       return exclude(weighed, *obstacle);
   }
   if (is_settling(rule)) {
-    const RuleId with = knowledge_.states[rule].settling->with;
-    exclude(weighed, {Condition::kSettling, likely_.likeliest_component(with), with});
+    const Settling& settling = *knowledge_.states[rule].settling;
+    exclude(weighed,
+            {Condition::kSettling, likely_.likeliest_component(settling.with), settling.with});
+    ends(weighed, settling.until);
   }
 }
 
@@ -111,6 +113,7 @@ bool ReasonsToWait::exclude_unproven(WeighedCandidate& weighed, double chance) c
   exclude(weighed, {awaiting->is_echo ? Condition::kSettling : Condition::kSuspect,
                     awaiting->component.value_or(likely_.likeliest_component(awaiting->because)),
                     was_in_trouble ? std::nullopt : std::optional(awaiting->because)});
+  ends(weighed, awaiting->until);
   if (awaiting->component)
     weighed.candidate.remark = was_in_trouble ? "was in trouble" : "was down for a strategy";
   return true;
@@ -140,6 +143,7 @@ bool ReasonsToWait::exclude_transient(WeighedCandidate& weighed) const {
   const double lost = time_cost(waiting, weights_, knowledge_.rules);
   if (share * weighed.candidate.cost < (1 - share) * lost) return false;
   exclude(weighed, {Condition::kSettling, likely_.likeliest_component(rule), rule});
+  ends(weighed, later(knowledge_.states[rule].first_detected(), patience));
   weighed.candidate.remark = "such failures often clear by themselves";
   return true;
 }
@@ -241,7 +245,11 @@ void ReasonsToWait::exclude_for(WeighedCandidate& weighed, std::size_t cause) co
   if (node.is_rule()) obstacle.because = node.rule;
   if (node.is_rule() && !has_fired) obstacle.condition = Condition::kSuspect;
   exclude(weighed, obstacle);
-  if (node.kind == CauseNode::Kind::kTrouble) weighed.candidate.remark = to_string(node.trouble);
+  if (node.kind == CauseNode::Kind::kTrouble) {
+    weighed.candidate.remark = to_string(node.trouble);
+    if (is_about_hang(causes_[weighed.failure].rule, knowledge_))
+      ends(weighed, diagnosis_.may_wait_until(weighed.failure));
+  }
   if (node.kind == CauseNode::Kind::kUnsupplied)
     weighed.candidate.remark = "needs " + node.channel + ", which no node offers";
 }

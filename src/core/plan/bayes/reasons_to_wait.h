@@ -36,6 +36,11 @@ class ReasonsToWait {
   bool exclude_coincidence(WeighedCandidate& weighed) const;
   bool exclude_unproven(WeighedCandidate& weighed, double chance) const;
   bool exclude_transient(WeighedCandidate& weighed) const;
+  // It waits until then at the latest, if that is known.
+  void ends(WeighedCandidate& weighed, Time until) const {
+    if (until > knowledge_.now && until != kNever)
+      weighed.candidate.within = until - knowledge_.now;
+  }
   bool is_settling(RuleId rule) const;
   bool is_sure(RuleId rule) const;
   bool ends_wait_of(StrategyId strategy, std::size_t cause) const;
