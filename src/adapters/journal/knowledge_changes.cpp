@@ -1,6 +1,5 @@
 #include "journal/knowledge_changes.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace culprit::journal {
@@ -30,11 +29,12 @@ Learned KnowledgeChanges::learned() {
   }
   for (std::size_t r = 0; r < couplings_.size(); ++r) {
     const auto all = knowledge_.couplings.of(RuleId(r));
+    // Both are in the order of their causes, of which a rule may have a thousand.
+    auto old = couplings_[r].cbegin();
     for (const Couplings::Learned& each : all) {
-      const auto is_same = [&](const Couplings::Learned& old) {
-        return old.cause == each.cause && old.coupling == each.coupling;
-      };
-      if (std::any_of(couplings_[r].begin(), couplings_[r].end(), is_same)) continue;
+      while (old != couplings_[r].cend() && old->cause < each.cause) ++old;
+      const bool is_known = old != couplings_[r].cend() && old->cause == each.cause;
+      if (is_known && old->coupling == each.coupling) continue;
       learned.couplings.push_back({rules[each.cause].name, rules.rules[r].name, each.coupling});
     }
     couplings_[r].assign(all.begin(), all.end());

@@ -521,8 +521,10 @@ void Analyzer::note_coincidence(RuleId id) {
     const auto& began = knowledge_.states[other].onset;
     // A repair of the other one may have caused this one.
     if (!began || other == id || onset.latest > knowledge_.states[other].failing_since) continue;
+    // One that recurs, or that an earlier process detected, began then.
+    const Time latest = std::min(began->latest, knowledge_.states[other].first_detected());
     const bool is_together = began->earliest <= later(onset.latest, kTogether) &&
-                             onset.earliest <= later(began->latest, kTogether);
+                             onset.earliest <= later(latest, kTogether);
     const auto& theirs = knowledge_.rules[other].components;
     if (is_together && !can_resolve(knowledge_, own, other) && !can_resolve(knowledge_, theirs, id))
       others.push_back(other);

@@ -10,13 +10,14 @@ namespace {
 using namespace std::chrono_literals;
 
 struct Watched {
-  explicit Watched(const std::string& policies)
+  explicit Watched(const std::string& policies, const std::string& others = "")
       : rules(*check(Source("x.rules",
                             "CYCLE 200ms\nCOMPONENT c NODE /c LAUNCH \"c\"\n"
                             "SIGNAL x DIAGNOSTIC c KEY x\nRULE Bad\nPOLICIES ERROR " +
                                 policies +
                                 "\nTRIGGER x > 1\nSTRATEGY again 90 10\n"
-                                "ADAPTATION c restart 5\n"))
+                                "ADAPTATION c restart 5\n" +
+                                others))
                    .rules) {}
 
   // x is `value` for `time`.
@@ -97,6 +98,20 @@ TEST(Clearing, OfAFailureThatComesAndGoesIsNoneByItself) {
   ASSERT_EQ(w.told<FailureResolved>(), 5);
   w.be(2, 50ms);
   EXPECT_EQ(w.knowledge.transients.seen(RuleId(0u)), (Transients::Seen{0, 5, {}}));
+}
+
+// Another failure begins while culprit is down: the next process detects both at once.
+TEST(Detecting, AFailureThatAnEarlierProcessDetectedHasNotBegunTogetherWithANewOne) {
+  for (const bool is_old : {false, true}) {
+    Watched w("",
+              "COMPONENT d NODE /d LAUNCH \"d\"\nSIGNAL y DIAGNOSTIC d KEY y\nRULE BadToo\n"
+              "POLICIES ERROR\nTRIGGER y > 1\nSTRATEGY begin 90 10\nADAPTATION d restart 5\n");
+    if (is_old) w.analyzer.remember({Event{Time(10s), FailureDetected{RuleId(0u)}}});
+    for (const std::size_t input : {0u, 1u}) w.knowledge.signals.set(InputId(input), Slot::of(2.0));
+    for (const Time end = w.now + 100ms; w.now < end; w.now += 50ms) w.analyzer.advance(w.now);
+    ASSERT_EQ(w.told<FailureDetected>(), 2);
+    EXPECT_EQ(w.knowledge.coincidences.together(RuleId(0u), RuleId(1u)), is_old ? 0 : 1);
+  }
 }
 
 // However often what it reads changes: a window of five is five cycles.

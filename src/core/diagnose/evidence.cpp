@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "diagnose/known_down.h"
 #include "diagnose/touched.h"
@@ -40,6 +42,7 @@ class Collector {
       : otherwise_(otherwise),
         causes_(found.causes()),
         diagnosis_(found.diagnosis()),
+        troubles_(found.troubles()),
         knowledge_(knowledge) {}
 
   std::vector<PieceOfEvidence> own(std::size_t i) {
@@ -50,8 +53,9 @@ class Collector {
         add(EvidenceSource::kKernel, name(c) + " exited or is stopped",
             knowledge_.components[c].process_since, logit(kKnownDown));
       } else if (explained > 0 && diagnosis_.prior(i) > 0.5 && knowledge_.components[c].hangs()) {
+        const auto& trouble = troubles_[c.index];
         add(EvidenceSource::kMeasured, name(c) + " hangs by itself",
-            onset_of_hang(c, knowledge_).latest, logit(kKnownDown));
+            trouble ? trouble->onset.latest : kLongAgo, logit(kKnownDown));
       }
     }
     if (all_.size() == 1) change(otherwise_.with_prior(kCoincidence));
@@ -143,6 +147,7 @@ class Collector {
   const Otherwise& otherwise_;
   const Causes& causes_;
   const Diagnosis& diagnosis_;
+  std::span<const std::optional<TroubleSeen>> troubles_;  // by component
   const Knowledge& knowledge_;
   std::vector<PieceOfEvidence> all_;
 };

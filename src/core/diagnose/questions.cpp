@@ -18,16 +18,10 @@ bool may_be_asked_again(const Questioned& questioned, Time now) {
 // When each component proved last that it works: it joined the graph, it answered, or a message came
 // on a topic that it alone publishes.
 std::vector<Time> last_signs(const Knowledge& knowledge) {
-  std::vector<Time> signs(knowledge.rules.components.size());
+  std::vector<Time> signs = published_last(knowledge);
   for (std::size_t c = 0; c < signs.size(); ++c) {
     const ComponentState& state = knowledge.components[ComponentId(c)];
-    signs[c] = std::max(state.answered, state.node_seen);
-  }
-  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
-    const auto& heard = knowledge.signals.rhythm(TopicId(t)).last;
-    if (!heard) continue;
-    if (const auto c = knowledge.graph.only_publisher(knowledge.rules.topics[t]))
-      signs[c->index] = std::max(signs[c->index], *heard);
+    signs[c] = std::max({signs[c], state.answered, state.node_seen});
   }
   return signs;
 }

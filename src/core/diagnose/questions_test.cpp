@@ -145,14 +145,18 @@ TEST_F(AMap, HungWhenTheFirstProbeGotNoAnswerAndItsLastMessageHadCome) {
   map.alive_since = Time(99s);
   map.missed_probes = 3;
   map.missed_since = Time(82s);
-  EXPECT_EQ(onset_of_hang(scene_.component("map"), *scene_).latest, Time(82s));
+  const auto began = [&] {
+    const Time published = published_last(*scene_)[scene_.component("map").index];
+    return onset_of_hang(map, published).latest;
+  };
+  EXPECT_EQ(began(), Time(82s));
   scene_->graph.endpoint_appeared("/map", EndpointKind::kPublisher, "/cmd");
   SignalStore::Rhythm rhythm;
   rhythm.last = Time(90s);
   scene_->signals.set_rhythm(TopicId(0u), rhythm);
-  EXPECT_EQ(onset_of_hang(scene_.component("map"), *scene_).latest, Time(90s));
+  EXPECT_EQ(began(), Time(90s));
   map.missed_probes = 0;  // another node of its process hangs
-  EXPECT_EQ(onset_of_hang(scene_.component("map"), *scene_).latest, Time(99s));
+  EXPECT_EQ(began(), Time(99s));
 }
 
 }  // namespace

@@ -19,23 +19,13 @@ std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& kn
     return std::nullopt;
   }
   const ComponentState& state = knowledge.components[input.component];
-  if (input.kind == Kind::kAlive && state.hangs()) return onset_of_hang(input.component, knowledge);
+  if (input.kind == Kind::kAlive && state.hangs())
+    return onset_of_hang(state, published_last(knowledge)[input.component.index]);
   if (input.kind == Kind::kAlive && state.alive == false)
     return Onset{state.alive_since, state.alive_since};
   if (input.kind == Kind::kLifecycle && state.lifecycle_since != kLongAgo)
     return Onset{state.lifecycle_since, state.lifecycle_since};
   return std::nullopt;
-}
-
-// When the last message came on a topic that the component alone publishes.
-Time published_last(ComponentId component, const Knowledge& knowledge) {
-  Time last = kLongAgo;
-  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
-    const auto& came = knowledge.signals.rhythm(TopicId(t)).last;
-    if (came && knowledge.graph.only_publisher(knowledge.rules.topics[t]) == component)
-      last = std::max(last, *came);
-  }
-  return last;
 }
 
 // HOLD n/k: at least n - 1 cycles pass from the onset until the rule fires, usually at most k.
@@ -118,13 +108,21 @@ Symptom symptom_of(RuleId rule, const Knowledge& knowledge) {
   return reads_values ? Symptom::kValue : Symptom::kOutage;
 }
 
+std::vector<Time> published_last(const Knowledge& knowledge) {
+  std::vector<Time> last(knowledge.rules.components.size(), kLongAgo);
+  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
+    const auto& came = knowledge.signals.rhythm(TopicId(t)).last;
+    if (!came) continue;
+    if (const auto c = knowledge.graph.only_publisher(knowledge.rules.topics[t]))
+      last[c->index] = std::max(last[c->index], *came);
+  }
+  return last;
+}
+
 // One that is busy may answer nothing for long, and publish.
-Onset onset_of_hang(ComponentId component, const Knowledge& knowledge) {
-  const ComponentState& state = knowledge.components[component];
+Onset onset_of_hang(const ComponentState& state, Time published) {
   const Time found = state.alive == false ? state.alive_since : kNever;
-  const Time missed = state.missed_probes > 0
-                          ? std::max(state.missed_since, published_last(component, knowledge))
-                          : kNever;
+  const Time missed = state.missed_probes > 0 ? std::max(state.missed_since, published) : kNever;
   return {state.answered, std::min({found, missed, state.questioned.unanswered.value_or(kNever)})};
 }
 

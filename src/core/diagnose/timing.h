@@ -27,6 +27,8 @@
 // topics have sent after l_i, it says that its components are well.
 #pragma once
 
+#include <vector>
+
 #include "knowledge/knowledge.h"
 
 namespace culprit::diagnose {
@@ -52,10 +54,12 @@ inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
 // Is the topic silent at `now` for longer than it usually is? Not while its rhythm is unknown.
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
 
+// By component: when the last message came on a topic that it alone publishes; kLongAgo: none did.
+std::vector<Time> published_last(const Knowledge& knowledge);
 // For a component that hangs, or did not answer a probe: its failure may have begun right after its
-// last answer, and had begun when the first probe got none and its last message had come. Only several
-// such probes show that it hangs.
-Onset onset_of_hang(ComponentId component, const Knowledge& knowledge);
+// last answer, and had begun when the first probe got none and its last message had come: `published`,
+// as published_last() says. Only several such probes show that it hangs.
+Onset onset_of_hang(const ComponentState& state, Time published);
 // How long after a change the rule reads it at the latest, besides its lateness: the period of its
 // signal, and the window that it looks at.
 Duration reading_of(RuleId rule, const Knowledge& knowledge);

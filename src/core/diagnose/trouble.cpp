@@ -9,15 +9,19 @@ namespace {
 
 Onset at(Time since) { return {since, since}; }
 
-std::optional<TroubleSeen> own_trouble(ComponentId component, const Knowledge& knowledge) {
+// `published` is that of all components, once one of them hangs: it takes a look at each topic.
+std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>& published,
+                                       const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[component];
   if (state.process == ProcessState::kGone)
     return TroubleSeen{Trouble::kExited, at(state.process_since)};
   if (state.process == ProcessState::kStopped)
     return TroubleSeen{Trouble::kStopped, at(state.process_since)};
   if (!knowledge.discovered.has(component)) return TroubleSeen{Trouble::kNeverSeen, at(kLongAgo)};
-  if (state.hangs() || is_overdue(component, knowledge))
-    return TroubleSeen{Trouble::kHung, onset_of_hang(component, knowledge)};
+  if (state.hangs() || is_overdue(component, knowledge)) {
+    if (published.empty()) published = published_last(knowledge);
+    return TroubleSeen{Trouble::kHung, onset_of_hang(state, published[component.index])};
+  }
   if (state.alive == false) return TroubleSeen{Trouble::kLeft, at(state.alive_since)};
   // When it went down is not known.
   if (state.is_coming_up()) return TroubleSeen{Trouble::kStarting, {kLongAgo, state.process_since}};
@@ -72,14 +76,19 @@ bool answers_nothing(Trouble trouble) {
 
 std::optional<TroubleSeen> trouble_of(ComponentId component, const Knowledge& knowledge) {
   if (knowledge.is_unheard(component)) return std::nullopt;
-  return own_trouble(component, knowledge);
+  std::vector<Time> published;
+  return own_trouble(component, published, knowledge);
 }
 
 std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge) {
   std::vector<std::optional<TroubleSeen>> all;
   all.reserve(knowledge.rules.components.size());
-  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c)
-    all.push_back(trouble_of(ComponentId(c), knowledge));
+  std::vector<Time> published;
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    const ComponentId component(c);
+    all.push_back(knowledge.is_unheard(component) ? std::nullopt
+                                                  : own_trouble(component, published, knowledge));
+  }
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
     const TopicId topic(t);
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(topic);

@@ -155,6 +155,7 @@ void StrategyExecutor::advance(Run& run, Time now, std::vector<Command>& command
   if (!take_up(run, now)) return;
   const Attempt::Stage stage = attempt_of(run)->stage;
   if (stage == Attempt::Stage::kUndoing && !run.is_undoing) {
+    owe_restart(run, now);
     run.is_undoing = true;
     run.pursuit.reset();
   }
@@ -526,13 +527,16 @@ bool StrategyExecutor::is_changed_by_another(const execute::Undo& undo) const {
          state.lifecycle != lifecycle->target;
 }
 
-// A restart that was interrupted may have left its component inactive. No person did that.
+// A restart that was interrupted, or failed, may have left its component inactive. No person did that.
 void StrategyExecutor::owe_restart(const Run& run, Time now) {
   const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
   if (run.is_undoing || run.adaptation >= adaptations.size()) return;
   const Adaptation& adaptation = adaptations[run.adaptation];
   const bool has_changed = run.goal > 0 || (run.pursuit && run.pursuit->has_changed_anything());
-  if (adaptation.type == AdaptationType::kRestart && !run.goals.empty() && has_changed)
+  const Lifecycle state = knowledge_.components[adaptation.component].lifecycle;
+  const bool fell_back = state == Lifecycle::kUnconfigured || state == Lifecycle::kFinalized;
+  if (adaptation.type == AdaptationType::kRestart && !run.goals.empty() && has_changed &&
+      !fell_back)
     owe({adaptation.component, execute::LifecycleGoal{Lifecycle::kActive, {}}}, now);
 }
 
@@ -541,7 +545,7 @@ void StrategyExecutor::owe(const execute::Undo& undo, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
   if (lifecycle == nullptr || lifecycle->target != Lifecycle::kActive) return;
   ComponentState& state = write_.components[undo.component];
-  state.brought = Brought{Lifecycle::kInactive, false, true};
+  state.brought = Brought{Lifecycle::kInactive, false, true, now};
   write_.events.tell(now, LifecycleIntended{undo.component, state.intended_lifecycle, true});
 }
 

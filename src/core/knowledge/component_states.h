@@ -36,8 +36,9 @@ struct Brought {
   Lifecycle to = Lifecycle::kUnknown;
   // Its process was in another state since: a person, or another program, has changed it.
   bool is_changed = false;
-  // It was deactivated, and could not be activated again when that was undone.
+  // It was deactivated, and could not be activated again: when that was undone, or by a restart.
   bool is_owed = false;
+  Time since = kLongAgo;  // when that was known, if it is owed
 };
 
 // A trouble (diagnose/trouble.h) that is over: that it was not active, or another that a failure was there

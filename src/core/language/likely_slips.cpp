@@ -90,7 +90,7 @@ std::optional<Edit> with_setup(const syntax::Component& written,
   return Edit{written.launch->span, "\"" + text.substr(first) + "\" SETUP " + command[1]};
 }
 
-// Calls `check` with the component of each alive(component) and lifecycle(component) in `e`.
+// Calls `check` with the component of each alive(), lifecycle(), cpu() and memory() in `e`.
 void check_calls(const syntax::Expression& e,
                  const std::function<void(const syntax::Name&)>& check) {
   const bool is_of_component = e.kind == syntax::Expression::Kind::kCall &&

@@ -100,6 +100,27 @@ TEST(Orders, WhatAPausedRestartLeftInactiveIsOwedByTheNextCulprit) {
   EXPECT_TRUE(next->knowledge().components[kCamera].is_to_be_given_back()) << transcript(r);
 }
 
+// The camera refuses to be activated again: that is no wish of a person either.
+TEST(Orders, WhatAFailedRestartLeftInactiveIsOwedByTheNextCulprit) {
+  TestRobot r = robot();
+  begin_restart(r);
+  for (int ms = 0; ms < 1000 && r["camera"].state != Lifecycle::kInactive; ++ms) r.run_for(1ms);
+  r["camera"].refuses = true;
+  const auto has_failed = [&] {
+    return std::ranges::any_of(r.events, [](const Event& event) {
+      return std::holds_alternative<StrategyFailed>(event.what);
+    });
+  };
+  for (int i = 0; i < 6000 && !has_failed(); ++i) r.run_for(10ms);
+  ASSERT_TRUE(has_failed()) << transcript(r);
+  r.run_for(10ms);
+  Manager::Options options;
+  options.start = r.now;
+  auto next = std::make_unique<Manager>(r.rules(), std::make_unique<BayesPlanner>(), options);
+  next->remember(r.events);
+  EXPECT_TRUE(next->knowledge().components[kCamera].is_to_be_given_back()) << transcript(r);
+}
+
 TEST(Orders, NothingIsLearnedFromAStrategyThatWasAbandoned) {
   TestRobot r = robot();
   const Belief before = r.manager().knowledge().beliefs[kRestart];

@@ -294,6 +294,7 @@ class Monitor {
   void note_part_probed(const Probed& seen, Time at);
   bool has_hung_part(ComponentId component) const;
   void note_missing_part(ComponentId component, Time at);
+  void note_given_back(ComponentId component, Lifecycle now, Time at);
   void note_rise(ComponentId component, Lifecycle state, Time at);
   void note_end_of_start(ComponentId component, Time at);
   bool hangs_in_transition(ComponentId component, Time now) const;

@@ -170,7 +170,7 @@ void Monitor::remember(const History& past) {
       ComponentState& state = write_.components[intended->component];
       state.intended_lifecycle = intended->state;
       state.brought.reset();
-      if (intended->is_owed) state.brought = Brought{Lifecycle::kInactive, false, true};
+      if (intended->is_owed) state.brought = Brought{Lifecycle::kInactive, false, true, event.at};
     }
     if (const auto* came_up = std::get_if<CameUp>(&event.what)) {
       ComponentState& state = write_.components[came_up->component];
@@ -184,6 +184,7 @@ void Monitor::remember(const History& past) {
 void Monitor::on(Time at, const LifecycleRead& seen) {
   ComponentState& state = write_.components[seen.component];
   const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
+  note_given_back(seen.component, seen.state, at);
   // A new process comes up from an unknown state, and that is no change.
   if (is_primary && state.lifecycle != Lifecycle::kUnknown && seen.state != state.lifecycle &&
       state.brought)
@@ -218,6 +219,22 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
     await_ends_no_more(seen.component, at);
   keep_ends(seen.component);
   update_lifecycle_inputs(seen.component, at);
+}
+
+// A component that is active again is owed nothing: a person may deactivate it. If it was active all the
+// time, the abandoned deactivation may still come, for as long as a transition may take.
+void Monitor::note_given_back(ComponentId component, Lifecycle now, Time at) {
+  ComponentState& state = write_.components[component];
+  if (!state.brought || !state.brought->is_owed) return;
+  const bool was_active = state.lifecycle == Lifecycle::kActive;
+  const bool is_active = now == Lifecycle::kActive;
+  const bool is_activated =
+      is_active && !was_active && (state.lifecycle != Lifecycle::kUnknown || state.took_place);
+  const bool stays_active =
+      (was_active || is_active) && at >= later(state.brought->since, kUnknownTransition);
+  if (!is_activated && !stays_active) return;
+  state.brought.reset();
+  write_.events.tell(at, LifecycleIntended{component, state.intended_lifecycle});
 }
 
 // During a transition it is in no state, and that is unknown until the transition takes too long.

@@ -112,6 +112,68 @@ TEST(Monitor, ANodeThatIsOnlyDiscoveredAnewIsAsItWas) {
   EXPECT_EQ(lifecycle(), Lifecycle::kUnknown) << "of another machine it may be another process";
 }
 
+// A restart that was interrupted left it inactive, or its deactivation may still come.
+struct Owed : Watched {
+  Owed() : Watched(rule("!alive(c)")) {
+    monitor.remember(
+        {Event{Time(0s), LifecycleIntended{ComponentId(0), Lifecycle::kActive, true}}});
+    observe(1s, NodeAppeared{"/c", 7});
+  }
+  void read(Duration at, Lifecycle state) { observe(at, LifecycleRead{ComponentId(0), state}); }
+  const ComponentState& state() const { return knowledge.components[ComponentId(0)]; }
+  // As the next process of culprit learns it.
+  bool is_said_to_be_owed() const {
+    bool is_owed = true;
+    for (const Event& event : knowledge.events) {
+      if (const auto* intended = std::get_if<LifecycleIntended>(&event.what))
+        is_owed = intended->is_owed;
+    }
+    return is_owed;
+  }
+};
+
+TEST(Monitor, APersonMayDeactivateWhatIsActiveAgain) {
+  Owed watched;
+  watched.read(1s, Lifecycle::kInactive);
+  EXPECT_TRUE(watched.state().is_to_be_given_back());
+  EXPECT_EQ(watched.state().intended_lifecycle, Lifecycle::kActive);
+  watched.read(2s, Lifecycle::kActive);
+  EXPECT_FALSE(watched.state().is_to_be_given_back());
+  EXPECT_FALSE(watched.is_said_to_be_owed()) << "else the next culprit undoes what a person did";
+  watched.read(5s, Lifecycle::kInactive);
+  EXPECT_EQ(watched.state().intended_lifecycle, Lifecycle::kInactive);
+}
+
+TEST(Monitor, ANewProcessThatComesUpActiveIsOwedNothing) {
+  Owed watched;
+  watched.read(1s, Lifecycle::kInactive);
+  watched.observe(2s, NodeVanished{"/c"});
+  watched.observe(3s, NodeAppeared{"/c", 8});
+  EXPECT_TRUE(watched.state().is_to_be_given_back());
+  watched.read(3s, Lifecycle::kActive);
+  EXPECT_FALSE(watched.state().is_to_be_given_back());
+  EXPECT_FALSE(watched.is_said_to_be_owed());
+}
+
+TEST(Monitor, ALateAnswerToAnAbandonedDeactivationIsNobodysWish) {
+  Owed watched;
+  watched.read(1s, Lifecycle::kActive);
+  watched.read(4s, Lifecycle::kInactive);
+  EXPECT_TRUE(watched.state().is_to_be_given_back());
+  EXPECT_EQ(watched.state().intended_lifecycle, Lifecycle::kActive);
+  EXPECT_TRUE(watched.is_said_to_be_owed());
+}
+
+TEST(Monitor, APersonMayDeactivateWhatAnAbandonedRestartLeftActive) {
+  Owed watched;
+  watched.read(1s, Lifecycle::kActive);
+  watched.read(300s, Lifecycle::kTransition);
+  watched.read(301s, Lifecycle::kInactive);
+  EXPECT_FALSE(watched.state().is_to_be_given_back());
+  EXPECT_FALSE(watched.is_said_to_be_owed());
+  EXPECT_EQ(watched.state().intended_lifecycle, Lifecycle::kInactive);
+}
+
 // As where `respawn` of a launch file starts a node again: it comes up unconfigured.
 TEST(Monitor, NobodyIntendedTheStateThatANewProcessComesUpIn) {
   Watched watched(rule("!alive(c)"));
