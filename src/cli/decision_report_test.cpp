@@ -53,7 +53,7 @@ TEST(DecisionReport, SaysOnceWhatWouldEndTheWait) {
   const std::string out =
       explained(R"({"source":"kernel","text":"camera exited","log_odds":2.9,"without":"fusion"})",
                 R"({"strategy":"s",)" + waits + R"(,{"strategy":"t",)" + waits);
-  EXPECT_THAT(out, HasSubstr("\n  without \"camera exited\", fusion would be responsible\n"
+  EXPECT_THAT(out, HasSubstr("\n  without \"camera exited\", fusion would be held responsible\n"
                              "  if camera does not answer within 0.60 s, camera is held "
                              "responsible\n\nStrategies compared\n"));
 }
