@@ -21,7 +21,7 @@ class HubObserver : public live::Observer {
   // After an event the state is published sooner, at most this often.
   static constexpr Duration kSoon = std::chrono::milliseconds(33);
 
-  // What was learned of pairs of failures is published at most this often.
+  // The learned couplings, latencies and coincidences are published at most this often.
   static constexpr Duration kLearnedPeriod = std::chrono::seconds(1);
 
   // Seconds since 1970: what people read off a wall, while the robot may count otherwise.

@@ -16,7 +16,7 @@ Json graph_to_json(const Knowledge& knowledge);
 // How it stands: rules, components, topics, inputs, beliefs. Times are seconds since `start`.
 Json state_to_json(const Knowledge& knowledge, Time start);
 
-// What was learned of rules, and of pairs of rules: `couplings`, `latencies`, `coincidences`, by the rules' numbers.
+// The counts that were learned of rules and of pairs of rules: `couplings`, `latencies`, `coincidences`, by the rules' numbers.
 Json learned_to_json(const Knowledge& knowledge);
 
 // The orders of people, and questions to them: paused or not, silences, strategies that await
