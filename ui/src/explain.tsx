@@ -12,7 +12,7 @@ import { usePaced } from './paced'
 import { signalOf, toAddress } from './plotted'
 import { isIll, kLooks, type Look, rankOf } from './looks'
 import { blindRules, can, clockAt, conditionAt, culprits, graph, isLive, live, looks, now, robot, selected, state } from './store'
-import type { Candidate, Criticality, Evidence, ManagerEvent, Suspect } from './types'
+import type { Candidate, Criticality, Evidence, ManagerEvent } from './types'
 
 export const kWords: Record<Criticality, string> = {
   ERROR: 'error',
