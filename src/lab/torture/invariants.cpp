@@ -287,7 +287,7 @@ bool Invariants::fell_silent_before(const Manager& manager, std::size_t part, Ti
     if (rules_.topics[t].name != "/" + rules_.components[part].name) continue;
     const auto& rhythm = manager.knowledge().signals.rhythm(TopicId(t));
     if (rhythm.last && rhythm.gap > Duration::zero())
-      return rhythm.silent_since() + 3 * rhythm.gap < at;
+      return rhythm.silent_since() + rhythm.gap * 3 / 2 < at;
   }
   return false;
 }
