@@ -41,8 +41,9 @@ void fleet(benchmark::State& state) {
         std::make_unique<Child>(world, "culprit-bench-peer",
                                 std::vector<std::string>{"fleet", std::to_string(i), "10", "4"}));
   const std::string rules = world.write("fleet.rules", fleet_rules(50, 4)).string();
-  const auto load_of = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), {"run", rules, "--dry-run"});
+  const std::string idle = world.write("idle.rules", fleet_rules(50, 0)).string();
+  const auto load_of = [&](const std::string& file, std::vector<std::string> options) {
+    options.insert(options.begin(), {"run", file, "--dry-run"});
     const Child culprit(world, "culprit", options);
     std::this_thread::sleep_for(7s);
     const double cpu = cpu_percent(culprit.pid(), 8s);
@@ -50,11 +51,15 @@ void fleet(benchmark::State& state) {
   };
   std::pair<double, double> watched;
   std::pair<double, double> recorded;
+  std::pair<double, double> reads_nothing;
   for (auto _ : state) {
-    watched = load_of({});
-    recorded = load_of({"--record", "--record-folder", (world.folder() / "recordings").string()});
+    reads_nothing = load_of(idle, {});
+    watched = load_of(rules, {});
+    recorded =
+        load_of(rules, {"--record", "--record-folder", (world.folder() / "recordings").string()});
   }
   state.counters["cpu_percent"] = watched.first;
+  claim("idle beside 50 nodes, no topic read: processor", reads_nothing.first, 1, "% of a core");
   claim("50 nodes, 200 topics, 2,000 samples/s: processor", watched.first, 3, "% of a core");
   claim("50 nodes, 200 topics, 2,000 samples/s: memory", watched.second, 64, "MiB");
   claim("the same, all of it recorded: processor for that", recorded.first - watched.first, 2,
