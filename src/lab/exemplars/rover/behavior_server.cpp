@@ -57,8 +57,6 @@ class BehaviorServer final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_behavior_server(Settings settings) {
-  return std::make_unique<BehaviorServer>(std::move(settings));
-}
+const Process kBehaviorServer = {"behavior_server", make<BehaviorServer>};
 
 }  // namespace culprit::rover

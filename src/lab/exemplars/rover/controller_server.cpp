@@ -139,8 +139,6 @@ class ControllerServer final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_controller_server(Settings settings) {
-  return std::make_unique<ControllerServer>(std::move(settings));
-}
+const Process kControllerServer = {"controller_server", make<ControllerServer>};
 
 }  // namespace culprit::rover

@@ -140,17 +140,9 @@ class BaseDriver final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_lidar_driver(Settings settings) {
-  return std::make_unique<LidarDriver>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_camera_driver(Settings settings) {
-  return std::make_unique<CameraDriver>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_imu_driver(Settings settings) {
-  return std::make_unique<ImuDriver>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_base_driver(Settings settings) {
-  return std::make_unique<BaseDriver>(std::move(settings));
-}
+const Process kLidarDriver = {"lidar_driver", make<LidarDriver>};
+const Process kCameraDriver = {"camera_driver", make<CameraDriver>};
+const Process kImuDriver = {"imu_driver", make<ImuDriver>};
+const Process kBaseDriver = {"base_driver", make<BaseDriver>};
 
 }  // namespace culprit::rover

@@ -5,7 +5,6 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <future>
 
 #include "base/live_clock.h"
 #include "exemplars/node_process.h"
@@ -15,16 +14,10 @@
 namespace culprit::rover {
 namespace {
 
-constexpr double kStandsAfter = 6;  // seconds
-constexpr double kLostAt = 0.8;     // metres
-
-// Begins a call that ends in a callback; gives what the callback gets.
+// Blocks until the call has ended.
 template <class T, class Begin>
 Expected<T> answer_to(Begin begin) {
-  const auto promise = std::make_shared<std::promise<Expected<T>>>();
-  auto future = promise->get_future();
-  begin([promise](Expected<T> answer) { promise->set_value(std::move(answer)); });
-  return future.get();
+  return sunset::ask<T>(begin).get();
 }
 
 bool is_stopped(int pid) {
@@ -33,14 +26,6 @@ bool is_stopped(int pid) {
   std::getline(file, text);
   const std::size_t end = text.rfind(") ");
   return end != std::string::npos && text.size() > end + 2 && text[end + 2] == 'T';
-}
-
-bool is_server(std::string_view process) {
-  const auto has = [process](std::span<const std::string_view> all) {
-    return std::ranges::any_of(all,
-                               [&](std::string_view each) { return each.substr(1) == process; });
-  };
-  return has(kLocalization) || has(kNavigation);
 }
 
 }  // namespace
@@ -121,7 +106,7 @@ void Experiment::on_diagnostics(const ros2::msg::DiagnosticArray& array) {
 void Experiment::poll_states() {
   for (const Process& process : processes()) {
     const std::string name(process.name);
-    if (!is_server(name) || std::exchange(is_polled_[name], true)) continue;
+    if (!is_server("/" + name) || std::exchange(is_polled_[name], true)) continue;
     control(name).get_state([this, name](const Expected<LifecycleState>& state) {
       is_polled_[name] = false;
       const MutexLock lock(mutex_);
@@ -139,16 +124,14 @@ Measurements Experiment::measure() const {
   const MutexLock lock(mutex_);
   Measurements result = seen_;
   result.standing_s = seconds(live_now() - moved_);
+  std::string inactive;
   for (const Process& process : processes()) {
-    const auto state = states_.find(std::string(process.name));
+    const std::string name(process.name);
+    const auto state = states_.find(name);
     const bool is_active = state != states_.end() && state->second == LifecycleState::kActive;
-    if (is_server(process.name) && !is_active && result.complaint.empty())
-      result.complaint = std::string(process.name) + " is not active";
+    if (is_server("/" + name) && !is_active && inactive.empty()) inactive = name;
   }
-  if (result.complaint.empty() && result.pose_error_m > kLostAt)
-    result.complaint = "the rover does not know where it is";
-  if (result.complaint.empty() && result.standing_s > kStandsAfter)
-    result.complaint = "the rover stands";
+  result.complain(inactive);
   return result;
 }
 
@@ -171,7 +154,7 @@ Expected<void> Experiment::inject(const Fault& fault) {
 }
 
 bool Experiment::is_over(const Fault& fault) {
-  if (fault.name == "kidnapped") return measure().pose_error_m < kLostAt;
+  if (fault.name == "kidnapped") return measure().pose_error_m < Measurements::kLostAt;
   if (fault.way == Way::kParameter) {
     const auto value = answer_to<Value>(
         [&](auto then) { control(fault.process).get_parameter(fault.parameter, then); });

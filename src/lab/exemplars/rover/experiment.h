@@ -20,18 +20,6 @@
 
 namespace culprit::rover {
 
-struct Measurements {
-  int goals_reached = 0;
-  int goals_failed = 0;
-  int collisions = 0;
-  double driven_m = 0;
-  double stood_s = 0;       // since restart_measuring()
-  double standing_s = 0;    // until now
-  double pose_error_m = 0;  // of amcl
-  // The fault that can be seen: a server is not active, the rover does not know where it is, or it stands. Empty: none.
-  std::string complaint{};
-};
-
 class Experiment {
  public:
   static Expected<std::unique_ptr<Experiment>> start(const ros2::ParticipantOptions& participant);

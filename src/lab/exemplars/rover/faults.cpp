@@ -1,6 +1,7 @@
 #include "exemplars/rover/faults.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace culprit::rover {
 namespace {
@@ -70,9 +71,45 @@ const std::vector<Fault>& faults() {
   return kAll;
 }
 
-const Fault* find_fault(std::string_view name) {
-  const auto found = std::ranges::find(faults(), name, &Fault::name);
-  return found == faults().end() ? nullptr : &*found;
+void Measurements::complain(const std::string& inactive) {
+  constexpr double kStandsAfter = 6;  // seconds
+  complaint = !inactive.empty()           ? inactive + " is not active"
+              : pose_error_m > kLostAt    ? "the rover does not know where it is"
+              : standing_s > kStandsAfter ? "the rover stands"
+                                          : "";
+}
+
+std::vector<std::string> Play::fault_names() const {
+  std::vector<std::string> names;
+  for (const Fault* fault : faults) names.push_back(fault->name);
+  return names;
+}
+
+bool Play::is_fixable() const { return std::ranges::all_of(faults, &Fault::is_fixable); }
+
+bool Play::is_cause(std::string_view component) const {
+  return std::ranges::find(faults, component, &Fault::cause) != faults.end();
+}
+
+Play play_of(std::vector<const Fault*> faults, std::uint64_t seed) {
+  Play play{"", std::move(faults), seed};
+  for (const Fault* fault : play.faults) play.name += (play.name.empty() ? "" : "+") + fault->name;
+  return play;
+}
+
+Expected<Play> find_play(std::string_view name, std::uint64_t seed) {
+  std::vector<const Fault*> play;
+  std::istringstream text{std::string(name)};
+  for (std::string each; std::getline(text, each, '+');) {
+    const auto found = std::ranges::find(faults(), each, &Fault::name);
+    if (found == faults().end()) {
+      std::string all;
+      for (const Fault& known : faults()) all += " " + known.name;
+      return Error{"the rover has no fault '" + each + "'; there are:" + all};
+    }
+    play.push_back(&*found);
+  }
+  return play_of(std::move(play), seed);
 }
 
 }  // namespace culprit::rover

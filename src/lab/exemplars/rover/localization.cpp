@@ -125,11 +125,7 @@ class Amcl final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_map_server(Settings settings) {
-  return std::make_unique<MapServer>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_amcl(Settings settings) {
-  return std::make_unique<Amcl>(std::move(settings));
-}
+const Process kMapServer = {"map_server", make<MapServer>};
+const Process kAmcl = {"amcl", make<Amcl>};
 
 }  // namespace culprit::rover

@@ -52,8 +52,6 @@ class MissionNode final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_mission(Settings settings) {
-  return std::make_unique<MissionNode>(std::move(settings));
-}
+const Process kMission = {"mission", make<MissionNode>, false};
 
 }  // namespace culprit::rover

@@ -86,8 +86,6 @@ class PlannerServer final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_planner_server(Settings settings) {
-  return std::make_unique<PlannerServer>(std::move(settings));
-}
+const Process kPlannerServer = {"planner_server", make<PlannerServer>};
 
 }  // namespace culprit::rover

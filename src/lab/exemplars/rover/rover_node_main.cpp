@@ -9,7 +9,6 @@
 #include <string>
 
 #include "exemplars/node_command_line.h"
-#include "exemplars/rover/lifecycle_manager.h"
 #include "exemplars/rover/nodes.h"
 
 namespace culprit::rover {

@@ -95,14 +95,8 @@ class EStop final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_velocity_smoother(Settings settings) {
-  return std::make_unique<VelocitySmoother>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_twist_mux(Settings settings) {
-  return std::make_unique<TwistMux>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_e_stop(Settings settings) {
-  return std::make_unique<EStop>(std::move(settings));
-}
+const Process kVelocitySmoother = {"velocity_smoother", make<VelocitySmoother>};
+const Process kTwistMux = {"twist_mux", make<TwistMux>};
+const Process kEStop = {"e_stop", make<EStop>};
 
 }  // namespace culprit::rover

@@ -122,8 +122,6 @@ class WorldNode final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_world(Settings settings) {
-  return std::make_unique<WorldNode>(std::move(settings));
-}
+const Process kWorld = {"world", make<WorldNode>, false};
 
 }  // namespace culprit::rover

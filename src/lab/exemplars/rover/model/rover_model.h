@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "exemplars/rover/bond_manager.h"
 #include "exemplars/rover/faults.h"
-#include "exemplars/rover/model/bond_manager.h"
 #include "exemplars/rover/model/trip.h"
 #include "language/rule_set.h"
 #include "robot/robot.h"
@@ -49,13 +49,6 @@ class RoverModel : public Robot {
   // Whether the fault itself is over, whatever became of its effects: as Experiment::is_over.
   bool is_over(const Fault& fault) const;
 
-  struct Measurements {
-    int goals_reached = 0;
-    int goals_failed = 0;
-    double stood_s = 0;       // since the beginning
-    double standing_s = 0;    // until now
-    std::string complaint{};  // as Measurements::complaint of the live rover; empty: it is well
-  };
   Measurements measure() const;
 
   // Called before a manager ends or deactivates a component that works and has no fault.
@@ -63,8 +56,7 @@ class RoverModel : public Robot {
 
  private:
   static constexpr Duration kTick = std::chrono::milliseconds(50);
-  static constexpr double kLostAt =
-      0.8;  // metres, as experiment.cpp; from there on the scan does not fit the map
+  static constexpr double kLostAt = Measurements::kLostAt;  // the scan does not fit the map
 
   struct Part : simulation::Body {
     std::string name{};                               // of its node, without the slash
