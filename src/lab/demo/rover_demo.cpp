@@ -77,7 +77,7 @@ Expected<void> RoverDemo::open() {
   setenv("ROVER_STATE", state_.c_str(), 1);
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
-  auto experiment = rover::Experiment::start(*participant);
+  auto experiment = rover::Experiment::start(*participant, state_);
   if (!experiment) return Error{experiment.error()};
   experiment_ = std::move(*experiment);
   processes_ = std::make_unique<owners::Supervisor>(rules_of_processes_, demo_processes(state_),

@@ -30,9 +30,9 @@ bool is_stopped(int pid) {
 
 }  // namespace
 
-Expected<std::unique_ptr<Experiment>> Experiment::start(
-    const ros2::ParticipantOptions& participant) {
-  std::unique_ptr<Experiment> experiment(new Experiment(participant));
+Expected<std::unique_ptr<Experiment>> Experiment::start(const ros2::ParticipantOptions& participant,
+                                                        std::filesystem::path state) {
+  std::unique_ptr<Experiment> experiment(new Experiment(participant, std::move(state)));
   if (auto opened = experiment->open(); !opened) return Error{opened.error()};
   experiment->thread_ = std::thread([e = experiment.get()] { e->executor_.run(); });
   return experiment;
@@ -146,6 +146,10 @@ Expected<void> Experiment::inject(const Fault& fault) {
     });
   const auto pids = processes_of("rover-node", fault.process, participant_.domain);
   if (pids.empty()) return Error{fault.process + " has no process on this machine"};
+  if (fault.way == Way::kNextStart &&
+      !(std::ofstream(next_start_of(fault.process))
+        << fault.parameter << ' ' << std::get<double>(fault.value) << std::flush))
+    return Error{"cannot write in " + state_.string()};
   for (const int pid : pids) {
     if (kill(pid, fault.way == Way::kStop ? SIGSTOP : SIGKILL) != 0)
       return Error{"process " + std::to_string(pid) + ": " + std::strerror(errno)};
@@ -153,12 +157,19 @@ Expected<void> Experiment::inject(const Fault& fault) {
   return {};
 }
 
+Expected<Value> Experiment::parameter(const std::string& process, const std::string& name) {
+  return answer_to<Value>([&](auto then) { control(process).get_parameter(name, then); });
+}
+
 bool Experiment::is_over(const Fault& fault) {
   if (fault.name == "kidnapped") return measure().pose_error_m < Measurements::kLostAt;
   if (fault.way == Way::kParameter) {
-    const auto value = answer_to<Value>(
-        [&](auto then) { control(fault.process).get_parameter(fault.parameter, then); });
+    const auto value = parameter(fault.process, fault.parameter);
     return value && *value != fault.value;
+  }
+  if (fault.way == Way::kNextStart) {
+    const auto value = parameter(fault.process, fault.parameter);  // it may have none of that name
+    return parameter(fault.process, "fault") && !(value && *value == fault.value);
   }
   if (fault.way == Way::kDeactivate) {
     const auto state =
@@ -173,10 +184,14 @@ void Experiment::clear() {
   for (const Process& process : processes()) {
     for (const int pid : processes_of("rover-node", process.name, participant_.domain))
       kill(pid, SIGCONT);
+    std::error_code error;
+    std::filesystem::remove(next_start_of(std::string(process.name)), error);
   }
   const std::vector<std::pair<std::string, std::pair<std::string, Value>>> healthy = {
       {"world", {"lidar_plugged", Value(true)}},
+      {"world", {"lidar_flaps", Value(false)}},
       {"world", {"battery", Value(1.0)}},
+      {"camera_driver", {"exposure", Value(1.0)}},
       {"base_driver", {"motor_power", Value(true)}},
       {"e_stop", {"stopped", Value(false)}},
       {"controller_server", {"max_speed", Value(0.5)}}};

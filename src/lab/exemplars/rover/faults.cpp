@@ -42,10 +42,10 @@ std::vector<Fault> make_faults() {
                    "start_group, activate"});
   for (const char* fault : {"stall", "zeros", "nan", "frozen", "slow", "wrong_frame", "hang"})
     all.push_back(shown("lidar_driver", fault, "redeploy"));
-  for (const char* fault : {"stall", "dark", "leak"})
+  for (const char* fault : {"stall", "dark", "dim", "leak"})
     all.push_back(shown("camera_driver", fault, "redeploy"));
   for (const char* fault : {"stall", "bias"}) all.push_back(shown("imu_driver", fault, "redeploy"));
-  for (const char* fault : {"odom_frozen", "tf_stopped", "tf_late", "crash"})
+  for (const char* fault : {"odom_frozen", "tf_stopped", "tf_late", "crash", "slip"})
     all.push_back(shown("base_driver", fault, "redeploy"));
   for (const char* fault : {"stall", "tf_stopped"})
     all.push_back(shown("amcl", fault, "restart, redeploy"));
@@ -54,12 +54,20 @@ std::vector<Fault> make_faults() {
   all.push_back(shown("controller_server", "costmap_frozen", "restart, redeploy"));
   all.push_back(shown("controller_server", "oscillate", "redeploy"));
   all.push_back(shown("bt_navigator", "hang", "redeploy"));
+  all.push_back(shown("velocity_smoother", "best_effort", "redeploy"));
+  all.push_back({"controller_server:setting_lost", Way::kNextStart, "controller_server",
+                 "max_speed", Value(0.1), "controller_server", "redeploy, then set_parameter"});
+  all.push_back({"imu:busy", Way::kNextStart, "imu_driver", "busy_s", Value(8.0), "imu",
+                 "redeploy, again and again"});
+  all.push_back({"camera:slow_start", Way::kNextStart, "camera_driver", "start_s", Value(8.0),
+                 "camera", "redeploy"});
   all.push_back({"controller_server:slow_setting", Way::kParameter, "controller_server",
                  "max_speed", Value(0.05), "controller_server", "set_parameter, redeploy"});
   all.push_back({"kidnapped", Way::kParameter, "world", "kidnap", Value("10 5.9 1"), "amcl",
                  "call /reinitialize_global_localization"});
   all.push_back(
       {"lidar:unplugged", Way::kParameter, "world", "lidar_plugged", Value(false), "lidar", ""});
+  all.push_back({"lidar:flaps", Way::kParameter, "world", "lidar_flaps", Value(true), "lidar", ""});
   all.push_back({"battery:sag", Way::kParameter, "world", "battery", Value(0.1), "base", ""});
   return all;
 }

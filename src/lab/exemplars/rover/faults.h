@@ -14,6 +14,7 @@ namespace culprit::rover {
 enum class Way : std::uint8_t {
   kKill,       // SIGKILL
   kStop,       // SIGSTOP
+  kNextStart,  // SIGKILL, and the next process starts with `parameter` (rover_node_main.cpp)
   kParameter,  // a parameter of the node
   kDeactivate  // somebody deactivates the node
 };
@@ -22,8 +23,8 @@ struct Fault {
   std::string name;  // "kill:amcl", "lidar:stall"
   Way way = Way::kKill;
   std::string process{};    // where it is injected (nodes.h)
-  std::string parameter{};  // kParameter
-  Value value{};            // kParameter
+  std::string parameter{};  // kParameter, kNextStart
+  Value value{};            // of the parameter; a double for kNextStart
   std::string cause{};      // the component of rover.rules that is responsible
   std::string remedies{};   // for people; empty: nothing but a person mends it
   bool is_fixable() const { return !remedies.empty(); }

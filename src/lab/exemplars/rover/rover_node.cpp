@@ -56,7 +56,9 @@ Expected<void> RoverNode::declare_parameters() {
   ros2::ParameterStore& parameters = node().parameters();
   if (auto done = parameters.declare("fault", Value("")); !done) return done;
   for (const auto& [name, value] : traits_.parameters) {
-    if (auto done = parameters.declare(name, value); !done) return done;
+    const bool is_changed = name == settings_.changed.first;
+    const Value& at_start = is_changed ? Value(settings_.changed.second) : value;
+    if (auto done = parameters.declare(name, at_start); !done) return done;
   }
   parameters.on_set([this](std::span<const ros2::msg::Parameter> changes) -> Expected<void> {
     for (const ros2::msg::Parameter& change : changes) {

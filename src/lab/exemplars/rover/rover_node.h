@@ -27,6 +27,7 @@ using namespace std::chrono_literals;
 struct Settings {
   std::uint64_t seed = 1;
   std::filesystem::path state{};  // folder of what outlives a process; empty: nothing does
+  std::pair<std::string, double> changed{};  // a parameter with another default, for experiments
 };
 
 class RoverNode {

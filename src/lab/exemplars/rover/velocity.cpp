@@ -8,6 +8,8 @@ namespace culprit::rover {
 namespace {
 
 // velocity_smoother: limits the acceleration, 20 Hz, from /cmd_vel_nav to /cmd_vel_smoothed. Stops 1 s after the last command.
+//
+// Fault: "best_effort" (its publisher has another QoS, and so the reliable twist_mux hears nothing).
 class VelocitySmoother final : public RoverNode {
  public:
   explicit VelocitySmoother(Settings settings)
@@ -31,9 +33,12 @@ class VelocitySmoother final : public RoverNode {
     };
     given_.linear.x = toward(given_.linear.x, wanted_.linear.x, 0.08);
     given_.angular.z = toward(given_.angular.z, wanted_.angular.z, 0.3);
-    out_->publish(given_);
+    if (has("best_effort") && !std::exchange(is_best_effort_, true))
+      offer(out_, "/cmd_vel_smoothed", ros2::qos::kSensorData);
+    if (out_) out_->publish(given_);
   }
 
+  bool is_best_effort_ = false;
   msg::Twist wanted_;
   msg::Twist given_;
   ros2::Executor::Clock::time_point heard_{};

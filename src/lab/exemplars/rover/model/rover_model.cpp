@@ -93,6 +93,7 @@ void RoverModel::make_parts() {
   }
   defaults("controller_server", "max_speed", 0.5);
   defaults("base", "motor_power", true);
+  defaults("camera", "exposure", 1.0);
   defaults("e_stop", "stopped", false);
   for (std::size_t c = 0; c < parts_.size(); ++c) {
     Part& part = parts_[c];
@@ -163,8 +164,15 @@ void RoverModel::start(ComponentId id) {
   part.start(++last_pid_);
   part.fault.clear();
   tell(ProcessSeen{id, ProcessState::kRunning, part.pid, ""});
-  const double start_s = part.is_server ? random_.uniform(kServerLeast_s, kServerMost_s)
-                                        : random_.uniform(kStartLeast_s, kStartMost_s);
+  if (now_ < part.busy_until) {
+    return after(kEnds, [this, id, pid = part.pid] {
+      if (parts_[id.index].pid == pid) lose(id, "exit code 1", Cause::kFault, true);
+    });
+  }
+  double start_s = part.is_server ? random_.uniform(kServerLeast_s, kServerMost_s)
+                                  : random_.uniform(kStartLeast_s, kStartMost_s);
+  if (part.next == "start_s") start_s += std::get<double>(part.next_value);
+  if (part.next == "start_s") part.next.clear();
   after(from_seconds(start_s), [this, id, pid = part.pid] {
     const Part& started = parts_[id.index];
     if (started.pid == pid && !started.is_gone()) appear(id);
@@ -180,6 +188,7 @@ void RoverModel::appear(ComponentId id) {
   part.memory_mib = 30;
   part.state = part.is_server ? Lifecycle::kUnconfigured : Lifecycle::kUnknown;
   part.parameters = part.at_start;
+  part.set_parameter(std::exchange(part.next, ""), part.next_value);
   tell(NodeAppeared{rules_[id].node, part.pid});
   for (const std::string& other : rules_[id].other_nodes) tell(NodeAppeared{other, part.pid});
   tell(Probed{id, true});
@@ -250,11 +259,19 @@ void RoverModel::probe(ComponentId id, int pid) {
 void RoverModel::inject(const Fault& fault) {
   if (fault.name == "kidnapped") pose_error_ = 4;
   if (fault.parameter == "lidar_plugged") is_plugged_ = false;
+  if (fault.parameter == "lidar_flaps") flaps_since_ = now_;
   if (fault.parameter == "battery") charge_ = std::get<double>(fault.value);
   if (fault.process == "world") return;
   const ComponentId id = ids_.at(fault.cause);
   Part& part = parts_[id.index];
   if (fault.way == Way::kKill) return lose(id, "killed by signal 9", Cause::kFault, false);
+  if (fault.way == Way::kNextStart) {
+    part.next = fault.parameter;
+    part.next_value = fault.value;
+    if (part.next == "busy_s")
+      part.busy_until = later(now_, from_seconds(std::get<double>(fault.value)));
+    return lose(id, "killed by signal 9", Cause::kFault, false);
+  }
   if (fault.way == Way::kDeactivate) return void(change(id, Transition::kDeactivate));
   if (fault.way == Way::kStop && part.is_running()) {
     part.process = ProcessState::kStopped;
@@ -272,12 +289,14 @@ void RoverModel::inject(const Fault& fault) {
 bool RoverModel::is_over(const Fault& fault) const {
   if (fault.name == "kidnapped") return pose_error_ < kLostAt;
   if (fault.parameter == "lidar_plugged") return is_plugged_;
+  if (fault.parameter == "lidar_flaps") return flaps_since_ == kNever;
   if (fault.parameter == "battery") return charge_ > std::get<double>(fault.value);
   const Part& part = parts_[ids_.at(fault.cause).index];
   if (fault.way == Way::kDeactivate) return works(part);
   if (!part.is_running() || !part.is_in_graph) return false;
   if (fault.parameter == "fault") return part.fault != std::get<std::string>(fault.value);
-  return fault.parameter.empty() || *part.parameter(fault.parameter) != fault.value;
+  const Value* value = part.parameter(fault.parameter);
+  return value == nullptr || *value != fault.value;
 }
 
 Measurements RoverModel::measure() const {

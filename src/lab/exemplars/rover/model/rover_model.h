@@ -62,6 +62,9 @@ class RoverModel : public Robot {
     std::string name{};                               // of its node, without the slash
     std::map<std::string, Value> at_start{};          // parameters of a new process
     std::string fault{};                              // that it shows
+    std::string next{};                               // Way::kNextStart: a parameter
+    Value next_value{};                               // of it
+    Time busy_until = kLongAgo;                       // its device
     std::vector<std::string> healed_by_activation{};  // faults
     bool is_server = false;
     Duration phase{};  // of its timers
@@ -137,9 +140,12 @@ class RoverModel : public Robot {
 
   // The world.
   double speed_ = 0;
+  double wheels_ = 0;  // its speed as the wheels measure it
   double turn_ = 0;
+  double place_ = 0;  // where it is on its way
   double charge_ = 1;
-  bool is_plugged_ = true;  // the lidar
+  bool is_plugged_ = true;     // the lidar
+  Time flaps_since_ = kNever;  // its plug is loose
   double stood_s_ = 0;
   Time moved_{};
 
