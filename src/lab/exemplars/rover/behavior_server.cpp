@@ -8,8 +8,7 @@ namespace {
 
 class BehaviorServer final : public RoverNode {
  public:
-  explicit BehaviorServer(Settings settings)
-      : RoverNode({.name = "/behavior_server", .is_managed = true}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {

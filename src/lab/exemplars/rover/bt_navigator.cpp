@@ -11,8 +11,7 @@ namespace {
 
 class BtNavigator final : public RoverNode {
  public:
-  explicit BtNavigator(Settings settings)
-      : RoverNode({.name = "/bt_navigator", .is_managed = true}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   using Clock = ros2::Executor::Clock;

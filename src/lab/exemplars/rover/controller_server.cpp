@@ -24,11 +24,8 @@ constexpr double kStopsAt = 0.25;    // metres
 class ControllerServer final : public RoverNode {
  public:
   explicit ControllerServer(Settings settings)
-      : RoverNode({.name = "/controller_server",
-                   .is_managed = true,
-                   .parameters = {{"max_speed", kMaxSpeed}},
-                   .cleared_by_activate = {"costmap_frozen"}},
-                  settings) {}
+      : RoverNode(settings, {.parameters = {{"max_speed", kMaxSpeed}},
+                             .cleared_by_activate = {"costmap_frozen"}}) {}
 
  private:
   void set_up() override {

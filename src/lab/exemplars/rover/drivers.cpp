@@ -12,7 +12,7 @@ namespace {
 // no lifecycle transition helps.
 class LidarDriver final : public RoverNode {
  public:
-  explicit LidarDriver(Settings settings) : RoverNode({.name = "/lidar_driver"}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {
@@ -43,7 +43,7 @@ class LidarDriver final : public RoverNode {
 class CameraDriver final : public RoverNode {
  public:
   explicit CameraDriver(Settings settings)
-      : RoverNode({.name = "/camera_driver", .parameters = {{"exposure", 1.0}}}, settings) {}
+      : RoverNode(settings, {.parameters = {{"exposure", 1.0}}}) {}
 
  private:
   void set_up() override {
@@ -72,7 +72,7 @@ class CameraDriver final : public RoverNode {
 // imu_driver: /imu at 20 Hz. Faults: "stall", "bias" (0.5 rad/s).
 class ImuDriver final : public RoverNode {
  public:
-  explicit ImuDriver(Settings settings) : RoverNode({.name = "/imu_driver"}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {
@@ -95,7 +95,7 @@ class ImuDriver final : public RoverNode {
 class BaseDriver final : public RoverNode {
  public:
   explicit BaseDriver(Settings settings)
-      : RoverNode({.name = "/base_driver", .parameters = {{"motor_power", true}}}, settings) {}
+      : RoverNode(settings, {.parameters = {{"motor_power", true}}}) {}
 
  private:
   void set_up() override {

@@ -13,7 +13,7 @@ constexpr std::array<Pose2, 6> kGoals = {
 
 class MissionNode final : public RoverNode {
  public:
-  explicit MissionNode(Settings settings) : RoverNode({.name = "/mission"}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {

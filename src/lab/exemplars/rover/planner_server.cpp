@@ -12,10 +12,7 @@ namespace {
 class PlannerServer final : public RoverNode {
  public:
   explicit PlannerServer(Settings settings)
-      : RoverNode({.name = "/planner_server",
-                   .is_managed = true,
-                   .cleared_by_activate = {"costmap_frozen"}},
-                  settings) {}
+      : RoverNode(settings, {.cleared_by_activate = {"costmap_frozen"}}) {}
 
  private:
   void set_up() override {

@@ -75,7 +75,9 @@ int main(int argc, char** argv) {
   const auto given = parse(line, argc, argv, exit_code);
   if (!given) return exit_code;
   const auto is_it = [&](const Process& each) { return each.name == given->name; };
-  Settings settings{.seed = given->seed, .state = given->option};
+  const std::string node = "/" + given->name;
+  Settings settings{
+      .node = node, .is_managed = is_server(node), .seed = given->seed, .state = given->option};
   if (auto obeyed = obey_experiment(given->name, settings); !obeyed) return fail(obeyed.error());
   return run(*std::ranges::find_if(processes(), is_it), settings);
 }

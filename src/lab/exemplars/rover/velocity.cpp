@@ -12,8 +12,7 @@ namespace {
 // Fault: "best_effort" (its publisher has another QoS, and so the reliable twist_mux hears nothing).
 class VelocitySmoother final : public RoverNode {
  public:
-  explicit VelocitySmoother(Settings settings)
-      : RoverNode({.name = "/velocity_smoother", .is_managed = true}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {
@@ -49,7 +48,7 @@ class VelocitySmoother final : public RoverNode {
 // stop: a lock, as twist_mux calls it.
 class TwistMux final : public RoverNode {
  public:
-  explicit TwistMux(Settings settings) : RoverNode({.name = "/twist_mux"}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   using Clock = ros2::Executor::Clock;
@@ -80,8 +79,7 @@ class TwistMux final : public RoverNode {
 // e_stop: the safe stop. /e_stop says at 5 Hz whether the rover must stand: the parameter `stopped`.
 class EStop final : public RoverNode {
  public:
-  explicit EStop(Settings settings)
-      : RoverNode({.name = "/e_stop", .parameters = {{"stopped", false}}}, settings) {}
+  explicit EStop(Settings settings) : RoverNode(settings, {.parameters = {{"stopped", false}}}) {}
 
  private:
   void set_up() override {

@@ -14,12 +14,10 @@ namespace {
 class WorldNode final : public RoverNode {
  public:
   explicit WorldNode(Settings settings)
-      : RoverNode({.name = "/world",
-                   .parameters = {{"lidar_plugged", true},
-                                  {"lidar_flaps", false},
-                                  {"battery", 1.0},
-                                  {"kidnap", ""}}},
-                  settings),
+      : RoverNode(settings, {.parameters = {{"lidar_plugged", true},
+                                            {"lidar_flaps", false},
+                                            {"battery", 1.0},
+                                            {"kidnap", ""}}}),
         world_(settings.seed) {}
 
  private:
