@@ -65,7 +65,7 @@ struct Sunset {
 
 struct Rover {
   using Demo = RoverDemo;
-  using Plays = std::vector<RoverDemo::Play>;
+  using Plays = std::vector<rover::Play>;
   static constexpr const char* kName = "the rover";
   static constexpr const char* kNodes = "seventeen processes in the shape of Nav2";
   static constexpr const char* kRules = "rover.rules";
@@ -79,10 +79,17 @@ struct Rover {
 };
 
 Expected<Rover::Plays> Rover::plays_for(const DemoOptions& options) {
-  if (options.scenario.empty()) return RoverDemo::default_plays();
-  auto play = RoverDemo::find_play(options.scenario);
-  if (!play) return Error{play.error()};
-  return Plays{*play};
+  Plays plays;
+  const std::string& one = options.scenario;
+  for (const std::string& name :
+       one.empty() ? std::vector<std::string>{"lidar:stall", "kidnapped", "kill:controller_server",
+                                              "lidar:unplugged"}
+                   : std::vector<std::string>{one}) {
+    auto play = rover::find_play(name);
+    if (!play) return Error{play.error()};
+    plays.push_back(std::move(*play));
+  }
+  return plays;
 }
 
 Expected<std::vector<Play>> Sunset::plays_for(const DemoOptions& options) {

@@ -11,6 +11,7 @@ void Episode::add(const Event& event) {
 void Episode::on(const FailureDetected& e) {
   failures_.push_back(rules_[e.rule].name);
   open_.insert(e.rule);
+  if (rules_[e.rule].strategies.empty()) ++calls_;
 }
 
 void Episode::on(const FailureResolved& e) {
@@ -36,6 +37,19 @@ void Episode::blame(const Incident& incident) {
     const std::string& name = rules_[component].name;
     if (std::ranges::find(blamed_, name) == blamed_.end()) blamed_.push_back(name);
   }
+}
+
+PlayOutcome Episode::outcome() const {
+  PlayOutcome outcome;
+  outcome.failures = failures_;
+  outcome.strategies = strategies_;
+  outcome.strategies_succeeded = strategies_succeeded_;
+  for (const Duration reaction : reactions_) outcome.reaction_times.push_back(seconds(reaction));
+  outcome.unresolved = open();
+  outcome.blamed = blamed_;
+  outcome.redeployed = redeployed_;
+  outcome.calls = calls_;
+  return outcome;
 }
 
 }  // namespace culprit::lab

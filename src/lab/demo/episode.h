@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "demo/play_outcome.h"
 #include "knowledge/event.h"
 
 namespace culprit::lab {
@@ -33,13 +34,21 @@ class Episode {
   // Failures that are there now, exhausted ones included.
   std::size_t open() const { return open_.size(); }
   bool is_exhausted() const { return is_exhausted_; }
+  // Calls for a person: rules that were exhausted, and rules that only report.
+  int calls() const { return calls_; }
+
+  // The part of a play's outcome that the events know.
+  PlayOutcome outcome() const;
 
  private:
   void on(const FailureDetected& e);
   void on(const FailureResolved& e);
   void on(const FailureLost& e) { open_.erase(e.rule); }
   void on(const StrategyChosen& e);
-  void on(const RuleExhausted&) { is_exhausted_ = true; }
+  void on(const RuleExhausted&) {
+    is_exhausted_ = true;
+    ++calls_;
+  }
   void on(const IncidentOpened& e) { blame(e.incident); }
   void on(const IncidentChanged& e) { blame(e.incident); }
   void blame(const Incident& incident);
@@ -55,6 +64,7 @@ class Episode {
   std::vector<std::string> redeployed_;
   int strategies_succeeded_ = 0;
   int redeployments_ = 0;
+  int calls_ = 0;
   bool is_exhausted_ = false;
 };
 

@@ -1,7 +1,6 @@
 #include "demo/rover_demo.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdlib.h>
 #include <system_error>
 
@@ -30,34 +29,6 @@ std::string launches(bool has_robot) {
 }
 
 }  // namespace
-
-std::vector<std::string> RoverDemo::Play::fault_names() const {
-  std::vector<std::string> names;
-  for (const rover::Fault* fault : faults) names.push_back(fault->name);
-  return names;
-}
-
-Expected<RoverDemo::Play> RoverDemo::find_play(std::string_view name) {
-  Play play{std::string(name), {}};
-  std::istringstream text(play.name);
-  for (std::string each; std::getline(text, each, '+');) {
-    const rover::Fault* fault = rover::find_fault(each);
-    if (fault == nullptr) {
-      std::string all;
-      for (const rover::Fault& known : rover::faults()) all += " " + known.name;
-      return Error{"the rover has no fault '" + each + "'; there are:" + all};
-    }
-    play.faults.push_back(fault);
-  }
-  return play;
-}
-
-std::vector<RoverDemo::Play> RoverDemo::default_plays() {
-  std::vector<Play> plays;
-  for (const char* name : {"lidar:stall", "kidnapped", "kill:controller_server", "lidar:unplugged"})
-    plays.push_back(*find_play(name));
-  return plays;
-}
 
 Expected<std::unique_ptr<RoverDemo>> RoverDemo::start(Options options,
                                                       const std::atomic<bool>& stop) {
@@ -106,7 +77,7 @@ Expected<void> RoverDemo::open() {
   setenv("ROVER_STATE", state_.c_str(), 1);
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
-  auto experiment = rover::Experiment::start(*participant);
+  auto experiment = rover::Experiment::start(*participant, state_);
   if (!experiment) return Error{experiment.error()};
   experiment_ = std::move(*experiment);
   processes_ = std::make_unique<owners::Supervisor>(rules_of_processes_, demo_processes(state_),
@@ -202,10 +173,14 @@ bool RoverDemo::wait_for_safe_stop() {
 }
 
 Expected<void> RoverDemo::inject(const std::string& fault) {
-  const auto play = find_play(fault);
-  if (!play) return Error{play.error()};
-  for (const rover::Fault* each : play->faults) {
-    if (auto injected = experiment_->inject(*each); !injected) return injected;
+  const auto play = rover::find_play(fault);
+  return play ? inject(*play) : Error{play.error()};
+}
+
+Expected<void> RoverDemo::inject(const rover::Play& play) {
+  for (const rover::Fault* fault : play.faults) {
+    if (auto injected = experiment_->inject(*fault); !injected)
+      return Error{fault->name + ": " + injected.error()};
   }
   return {};
 }
@@ -215,7 +190,7 @@ Expected<void> RoverDemo::clear_faults() {
   return {};
 }
 
-Expected<PlayOutcome> RoverDemo::play(const Play& play, Duration patience) {
+Expected<PlayOutcome> RoverDemo::play(const rover::Play& play, Duration patience) {
   if (session_) {
     const MutexLock lock(mutex_);
     episode_.emplace(rules());
@@ -223,41 +198,31 @@ Expected<PlayOutcome> RoverDemo::play(const Play& play, Duration patience) {
   const rover::Measurements before = experiment_->measure();
   experiment_->restart_measuring();
   const Time begin = live_now();
-  for (const rover::Fault* fault : play.faults) {
-    if (auto injected = experiment_->inject(*fault); !injected)
-      return Error{fault->name + ": " + injected.error()};
-  }
-  const bool is_fixable = std::ranges::all_of(play.faults, &rover::Fault::is_fixable);
+  if (auto injected = inject(play); !injected) return Error{injected.error()};
+  const bool is_fixable = play.is_fixable();
   const auto well = is_fixable ? wait_until_well(play.faults, patience) : std::nullopt;
   const bool stands = !is_fixable && wait_for_safe_stop();
   if (stop_) return Error{"interrupted"};
 
   const rover::Measurements measured = experiment_->measure();
   PlayOutcome outcome;
+  {
+    const MutexLock lock(mutex_);
+    if (episode_) outcome = episode_->outcome();
+    episode_.reset();
+  }
   outcome.name = play.name;
   outcome.faults = play.fault_names();
   outcome.is_for_a_person = !is_fixable;
   outcome.downtime = measured.stood_s;
   outcome.goals = measured.goals_reached - before.goals_reached;
   outcome.collisions = measured.collisions - before.collisions;
+  if (!is_fixable) outcome.unresolved = 0;
   if (well) outcome.healed_s = seconds(*well - begin);
-  {
-    const MutexLock lock(mutex_);
-    if (episode_) {
-      outcome.failures = episode_->failures();
-      outcome.strategies = episode_->strategies();
-      outcome.strategies_succeeded = episode_->strategies_succeeded();
-      outcome.blamed = episode_->blamed();
-      outcome.redeployed = episode_->redeployed();
-      for (const Duration reaction : episode_->reactions())
-        outcome.reaction_times.push_back(seconds(reaction));
-      outcome.unresolved = is_fixable ? episode_->open() : 0;
-    }
-  }
-  for (const std::string& each : outcome.redeployed) {
-    if (std::ranges::none_of(play.faults, [&](const auto* fault) { return fault->cause == each; }))
-      ++outcome.unnecessary_redeployments;
-  }
+  if (stands)
+    outcome.stands_after_s = std::max(0.0, seconds(live_now() - begin) - measured.standing_s);
+  outcome.unnecessary_redeployments = static_cast<int>(std::ranges::count_if(
+      outcome.redeployed, [&](const std::string& each) { return !play.is_cause(each); }));
   if (!is_fixable) {
     outcome.complaint = stands ? "" : "the rover does not stop";
   } else if (!well) {
@@ -265,10 +230,6 @@ Expected<PlayOutcome> RoverDemo::play(const Play& play, Duration patience) {
         measured.complaint.empty() ? "the fault is still there" : measured.complaint;
   }
   experiment_->clear();
-  {
-    const MutexLock lock(mutex_);
-    episode_.reset();
-  }
   return outcome;
 }
 

@@ -41,17 +41,6 @@ class RoverDemo : private live::Listener {
     live::Observer* observer = nullptr;
   };
 
-  // Faults that are injected at once.
-  struct Play {
-    std::string name;
-    std::vector<const rover::Fault*> faults;
-    std::vector<std::string> fault_names() const;
-  };
-  // A fault by name, or several: "kill:amcl", "lidar:stall+kidnapped".
-  static Expected<Play> find_play(std::string_view name);
-  // The default plays of `culprit demo --robot rover`.
-  static std::vector<Play> default_plays();
-
   // Starts all processes and waits until the rover drives. Sets ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY and what the nodes read of
   // this process, so call it before there are threads that read the environment. Errors: a program is missing, or the
   // robot does not come up.
@@ -61,7 +50,7 @@ class RoverDemo : private live::Listener {
 
   // Breaks the rover, and waits until it drives again or `patience` is over. With a fault that only a person mends: until it
   // stands. Removes what is left of the faults. An error: a fault could not be injected, or `stop` was set.
-  Expected<PlayOutcome> play(const Play& play, Duration patience = kPatience);
+  Expected<PlayOutcome> play(const rover::Play& play, Duration patience = kPatience);
 
   Expected<void> inject(const std::string& fault);
   Expected<void> clear_faults();
@@ -82,6 +71,7 @@ class RoverDemo : private live::Listener {
   RoverDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain,
             std::filesystem::path state);
   Expected<void> open();
+  Expected<void> inject(const rover::Play& play);
   Expected<void> open_session(const ros2::ParticipantOptions& participant);
   void respawn();
   void on_event(const Event& event, const RuleSet& rules, Time start) override;

@@ -27,7 +27,7 @@ TEST(Rover, GoesOnDrivingAfterItsLidarStalled) {
   auto demo = RoverDemo::start({}, stop);
   ASSERT_TRUE(demo) << demo.error();
   const double driven = (*demo)->measure().driven_m;
-  const auto outcome = (*demo)->play(*RoverDemo::find_play("lidar:stall"));
+  const auto outcome = (*demo)->play(*rover::find_play("lidar:stall"));
   ASSERT_TRUE(outcome) << outcome.error();
   EXPECT_TRUE(outcome->is_resolved()) << outcome->complaint;
   EXPECT_THAT(outcome->blamed, testing::Contains("lidar"));
@@ -46,7 +46,7 @@ TEST(Rover, GoesOnDrivingAfterItsLidarStalled) {
 
 TEST(Rover, SaysWhichFaultsThereAre) {
   EXPECT_GE(rover::faults().size(), 40U);
-  const auto play = RoverDemo::find_play("lidar:melts");
+  const auto play = rover::find_play("lidar:melts");
   ASSERT_FALSE(play);
   EXPECT_THAT(play.error(), testing::HasSubstr("lidar:stall"));
 }

@@ -109,19 +109,14 @@ Expected<PlayOutcome> SunsetDemo::play(const Play& play) {
 
   const sunset::Measurements measured = world_->experiment().measure();
   PlayOutcome outcome;
-  outcome.name = play.name;
-  outcome.faults = play.fault_names();
   {
     const MutexLock lock(mutex_);
-    outcome.failures = episode_->failures();
-    outcome.strategies = episode_->strategies();
-    outcome.strategies_succeeded = episode_->strategies_succeeded();
+    outcome = episode_->outcome();
     outcome.unnecessary_redeployments =
         std::max(0, episode_->redeployments() - play.redeployments_needed());
-    for (const Duration reaction : episode_->reactions())
-      outcome.reaction_times.push_back(seconds(reaction));
-    outcome.unresolved = episode_->open();
   }
+  outcome.name = play.name;
+  outcome.faults = play.fault_names();
   outcome.downtime = measured.downtime_sec / options_.speed;
   outcome.mean_iou = measured.mean_iou;
   if (!is_well)

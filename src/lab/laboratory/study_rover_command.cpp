@@ -8,10 +8,11 @@
 
 #include "base/text_file.h"
 #include "demo/demo_setup.h"
-#include "demo/rover_study.h"
+#include "demo/rover_demo.h"
 #include "json/json.h"
 #include "laboratory/commands.h"
-#include "plan/paper_planner.h"
+#include "laboratory/study_output.h"
+#include "rover_study/live.h"
 #include "rover_study/study.h"
 #include "terminal/console.h"
 
@@ -19,7 +20,6 @@ namespace culprit::lab {
 namespace {
 
 using study::RoverCampaign;
-using study::RoverFormat;
 
 struct RoverOptions {
   std::vector<std::string> managers;
@@ -34,101 +34,6 @@ struct RoverOptions {
   double patience_s = 60;
   std::string output;
 };
-
-// The figures of one manager over all faults that something mends.
-struct RoverTotals {
-  int faults = 0;
-  int healed = 0;
-  int blamed = 0;
-  int others = 0;
-  int collisions = 0;
-  double stood_s = 0;
-  std::vector<double> healed_s{};
-
-  void add(const RoverDemo::Play& play, const PlayOutcome& outcome) {
-    others += outcome.unnecessary_redeployments;
-    collisions += outcome.collisions;
-    if (!std::ranges::all_of(play.faults, &rover::Fault::is_fixable)) return;
-    ++faults;
-    stood_s += outcome.downtime;
-    blamed += is_blamed(play, outcome) ? 1 : 0;
-    if (!outcome.healed_s) return;
-    ++healed;
-    healed_s.push_back(*outcome.healed_s);
-  }
-  double median_s() {
-    if (healed_s.empty()) return 0;
-    std::ranges::sort(healed_s);
-    return healed_s[healed_s.size() / 2];
-  }
-};
-
-const std::vector<std::string> kLiveManagers = {"none", "respawn", "paper", "bayes"};
-
-RoverDemo::Options demo_of(const std::string& manager, std::uint64_t seed) {
-  RoverDemo::Options demo;
-  demo.seed = seed;
-  if (manager == "none") demo.manager = RoverDemo::Manager::kNone;
-  if (manager == "respawn") demo.manager = RoverDemo::Manager::kRespawn;
-  if (manager == "paper") demo.planner = [] { return std::make_unique<PaperPlanner>(); };
-  return demo;
-}
-
-Json to_json(const std::string& manager, const PlayOutcome& outcome) {
-  Json row{{"manager", manager},
-           {"fault", outcome.name},
-           {"noticed", !outcome.failures.empty()},
-           {"blamed", outcome.blamed},
-           {"healed_s", nullptr},
-           {"stood_s", outcome.downtime},
-           {"redeployed", outcome.redeployed},
-           {"other_redeployments", outcome.unnecessary_redeployments},
-           {"goals", outcome.goals},
-           {"collisions", outcome.collisions},
-           {"complaint", outcome.complaint}};
-  if (outcome.healed_s) row["healed_s"] = *outcome.healed_s;
-  return row;
-}
-
-int study_live(const RoverOptions& options) {
-  std::vector<RoverDemo::Play> plays;
-  for (const std::string& name : options.faults) {
-    auto play = RoverDemo::find_play(name);
-    if (!play) return fail(play.error(), kUsage);
-    plays.push_back(std::move(*play));
-  }
-  if (plays.empty()) {
-    for (const rover::Fault& fault : rover::faults())
-      plays.push_back(*RoverDemo::find_play(fault.name));
-  }
-  StopSignals signals;
-  Json rows = Json::array();
-  std::string summary = fmt::format("{:<9} {:>7} {:>7} {:>8} {:>8} {:>7} {:>11}\n", "manager",
-                                    "healed", "blamed", "median", "stood", "others", "collisions");
-  const std::vector<std::string> managers =
-      options.managers.empty() ? kLiveManagers : options.managers;
-  for (const std::string& manager : managers) {
-    say(stdout, "manager {}\n{}", manager, header_of_rover_table());
-    RoverTotals totals;
-    RoverStudy study{.demo = demo_of(manager, options.seed),
-                     .plays = plays,
-                     .patience = from_seconds(options.patience_s)};
-    study.on_outcome = [&](const RoverDemo::Play& play, const PlayOutcome& outcome) {
-      say(stdout, "{}", row_of(play, outcome));
-      rows.push_back(to_json(manager, outcome));
-      totals.add(play, outcome);
-    };
-    if (const auto played = play_all(study, signals.stopped()); !played)
-      return fail(played.error(), kFailed);
-    summary += fmt::format("{:<9} {:>3}/{:<3} {:>3}/{:<3} {:>6.1f} s {:>6.0f} s {:>7} {:>11}\n",
-                           manager, totals.healed, totals.faults, totals.blamed, totals.faults,
-                           totals.median_s(), totals.stood_s, totals.others, totals.collisions);
-  }
-  say(stdout, "\n{}", summary);
-  if (options.output.empty()) return kOk;
-  const auto written = write_text(options.output, to_indented(rows) + "\n");
-  return written ? kOk : fail(written.error(), kFailed);
-}
 
 // The figures of a row, of the plays in which something mends each fault.
 Json to_json(const study::RoverRow& row) {
@@ -145,82 +50,116 @@ Json to_json(const study::RoverRow& row) {
           {"wrong_restarts", row.wrong_restarts},
           {"faults", row.faults},
           {"blamed", row.blamed},
+          {"collisions", row.collisions ? Json(*row.collisions) : Json(nullptr)},
           {"calls", row.calls},
           {"unfixable", row.unfixable},
           {"stands", row.stands}};
 }
 
-Json to_json(const study::RoverPlay& play, const std::string& manager,
+Json to_json(const rover::Play& play, const std::string& manager,
              const study::RoverResult& result) {
   return {{"manager", manager},
-          {"faults", play.name()},
+          {"faults", play.name},
           {"seed", play.seed},
+          {"noticed", result.is_noticed},
           {"healed_s", result.healed_s ? Json(*result.healed_s) : Json(nullptr)},
           {"stood_s", result.stood_s},
           {"goals", result.goals},
           {"blamed", result.names},
           {"strategies", result.strategies},
           {"wrong_restarts", result.wrong_restarts},
+          {"collisions", result.collisions ? Json(*result.collisions) : Json(nullptr)},
           {"calls", result.calls},
           {"complaint", result.complaint}};
 }
 
-Expected<std::vector<study::RoverPlay>> named_plays(const RoverOptions& options) {
-  std::vector<study::RoverPlay> plays;
+Expected<std::vector<rover::Play>> plays_of(const RoverOptions& options,
+                                            const RoverCampaign& campaign) {
+  std::vector<rover::Play> plays;
   for (const std::string& name : options.faults) {
-    const auto play = RoverDemo::find_play(name);
+    auto play = rover::find_play(name, options.seed);
     if (!play) return Error{play.error()};
-    plays.push_back({play->faults, options.seed});
+    plays.push_back(std::move(*play));
   }
+  if (!plays.empty()) return plays;
+  plays = study::plays_of(campaign);
+  // One rover is there for all of them.
+  for (rover::Play& play : plays) play.seed = options.is_live ? options.seed : play.seed;
   return plays;
 }
 
-int study_model(const RoverOptions& options) {
-  using enum RoverCampaign::Faults;
-  const auto faults = options.several == "pairs"     ? kPairs
-                      : options.several == "triples" ? kTriples
-                                                     : kSingle;
-  const auto format = options.format == "markdown" ? RoverFormat::kMarkdown : RoverFormat::kText;
-  RoverCampaign campaign{
-      .faults = faults, .triples = options.triples, .seed = options.seed, .jobs = options.jobs};
-  if (!options.managers.empty()) campaign.managers = options.managers;
-  auto plays = named_plays(options);
-  if (!plays) return fail(plays.error(), kUsage);
-  if (plays->empty()) plays = study::plays_of(campaign);
-  const RuleSet rules = embedded_rules("rover.rules", RoverDemo::rule_text());
-  const study::RoverResults results = study::play_all(rules, *plays, campaign);
+// Each play as soon as it is over.
+Expected<study::RoverResults> play_live(const RoverOptions& options, const RoverCampaign& campaign,
+                                        const std::vector<rover::Play>& plays) {
+  StopSignals signals;
+  study::RoverResults all;
+  for (const std::string& manager : campaign.managers) {
+    say(stderr, "manager {}\n{}", manager, study::header_of_plays());
+    auto results =
+        study::play_live(plays, manager, from_seconds(options.patience_s), signals.stopped(),
+                         [](const rover::Play& play, const study::RoverResult& result) {
+                           say(stderr, "{}", study::line_of(play, result));
+                         });
+    if (!results) return Error{results.error()};
+    all.push_back(std::move(*results));
+  }
+  return all;
+}
 
+int print(const RoverOptions& options, const RoverCampaign& campaign,
+          const std::vector<rover::Play>& plays, const study::RoverResults& results) {
   std::vector<study::RoverRow> rows;
   Json json_rows = Json::array();
   Json json_plays = Json::array();
   std::string left;
   for (std::size_t m = 0; m < campaign.managers.size(); ++m) {
     const std::string& manager = campaign.managers[m];
-    rows.push_back(study::row_of(manager, *plays, results[m]));
+    rows.push_back(study::row_of(manager, plays, results[m]));
     json_rows.push_back(to_json(rows.back()));
-    for (std::size_t i = 0; i < plays->size(); ++i)
-      json_plays.push_back(to_json((*plays)[i], manager, results[m][i]));
-    if (manager == "bayes") left = study::left_of(manager, *plays, results[m]);
+    for (std::size_t i = 0; i < plays.size(); ++i)
+      json_plays.push_back(to_json(plays[i], manager, results[m][i]));
+    if (manager == "bayes") left = study::left_of(manager, plays, results[m]);
   }
   if (!options.output.empty()) {
     const auto written = write_text(options.output, to_indented(json_plays) + "\n");
     if (!written) return fail(written.error(), kFailed);
   }
   if (options.is_json) return say(stdout, "{}\n", to_indented(json_rows)), kOk;
-  say(stdout, "{}\n{}\n{}", study::table_of(rows, format),
-      study::comparisons_of("bayes", campaign, *plays, results, format), left);
+  std::vector<study::Table> tables = {study::table_of(rows)};
+  if (auto compared = study::comparisons_of("bayes", campaign, plays, results);
+      !compared.rows.empty())
+    tables.push_back(std::move(compared));
+  const auto text = tables_as(tables, options.format);
+  if (!text) return fail(text.error(), kUsage);
+  say(stdout, "{}\n{}", *text, left);
   return kOk;
 }
 
 int study_rover(const RoverOptions& options) {
-  const std::vector<std::string>& known = options.is_live ? kLiveManagers : study::rover_managers();
+  using enum RoverCampaign::Faults;
+  RoverCampaign campaign{.faults = options.several == "pairs"     ? kPairs
+                                   : options.several == "triples" ? kTriples
+                                                                  : kSingle,
+                         .triples = options.triples,
+                         .seed = options.seed,
+                         .jobs = options.jobs};
+  const std::vector<std::string>& known =
+      options.is_live ? study::live_rover_managers() : study::rover_managers();
+  campaign.managers = options.managers.empty() ? known : options.managers;
   for (const std::string& manager : options.managers) {
     if (std::ranges::find(known, manager) == known.end())
       return fail(
           fmt::format("--manager {}: there is none; choose of {}", manager, fmt::join(known, ", ")),
           kUsage);
   }
-  return options.is_live ? study_live(options) : study_model(options);
+  const auto plays = plays_of(options, campaign);
+  if (!plays) return fail(plays.error(), kUsage);
+  if (!options.is_live) {
+    const RuleSet rules = embedded_rules("rover.rules", RoverDemo::rule_text());
+    return print(options, campaign, *plays, study::play_all(rules, *plays, campaign));
+  }
+  const auto results = play_live(options, campaign, *plays);
+  return results ? print(options, campaign, *plays, *results) : fail(results.error(), kFailed);
 }
 
 }  // namespace

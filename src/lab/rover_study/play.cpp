@@ -23,7 +23,7 @@ constexpr Duration kLooks = 100ms;
 constexpr Duration kCalm = 2s;
 
 std::unique_ptr<ManagingSystem> manager_of(const std::string& name, const RuleSet& rules,
-                                           const RoverPlay& play, Time at) {
+                                           const rover::Play& play, Time at) {
   const Manager::Options options{.discovery = Duration::zero()};
   if (name == "bayes")
     return std::make_unique<Manager>(rules, std::make_unique<BayesPlanner>(), options);
@@ -35,12 +35,6 @@ std::unique_ptr<ManagingSystem> manager_of(const std::string& name, const RuleSe
   return std::make_unique<RoverOracle>(rules, std::vector<const rover::Fault*>{}, at);
 }
 
-bool is_call(const Event& event, const RuleSet& rules) {
-  if (std::holds_alternative<RuleExhausted>(event.what)) return true;
-  const auto* detected = std::get_if<FailureDetected>(&event.what);
-  return detected != nullptr && rules[detected->rule].strategies.empty();
-}
-
 }  // namespace
 
 const std::vector<std::string>& rover_managers() {
@@ -49,17 +43,13 @@ const std::vector<std::string>& rover_managers() {
   return kAll;
 }
 
-std::string RoverPlay::name() const {
-  std::string text;
-  for (const rover::Fault* fault : faults) text += (text.empty() ? "" : "+") + fault->name;
-  return text;
+int right_of(const rover::Play& play, const std::vector<std::string>& names) {
+  return static_cast<int>(std::ranges::count_if(play.faults, [&](const rover::Fault* fault) {
+    return std::ranges::find(names, fault->cause) != names.end();
+  }));
 }
 
-bool RoverPlay::is_fixable() const {
-  return std::ranges::all_of(faults, &rover::Fault::is_fixable);
-}
-
-RoverResult play(const RuleSet& rules, const RoverPlay& play, const std::string& manager,
+RoverResult play(const RuleSet& rules, const rover::Play& play, const std::string& manager,
                  Duration watched, const std::function<void(const Event&)>& on_event) {
   simulation::Random random(play.seed);
   RoverModel model(rules, {.seed = play.seed, .has_bonds = manager != "none"});
@@ -71,17 +61,13 @@ RoverResult play(const RuleSet& rules, const RoverPlay& play, const std::string&
   runtime.on_events = [&](std::span<const Event> events) {
     for (const Event& event : events) {
       if (episode) episode->add(event);
-      if (episode && is_call(event, rules)) ++result.calls;
       if (on_event) on_event(event);
     }
   };
   const std::atomic<bool> never = false;
   runtime.run(never, at);
-  const auto is_cause = [&play](const std::string& name) {
-    return std::ranges::find(play.faults, name, &rover::Fault::cause) != play.faults.end();
-  };
   model.on_healthy_taken_down = [&](ComponentId id) {
-    if (!is_cause(rules[id].name)) ++result.wrong_restarts;
+    if (!play.is_cause(rules[id].name)) ++result.wrong_restarts;
   };
   const auto before = model.measure();
   episode.emplace(rules);
@@ -105,14 +91,15 @@ RoverResult play(const RuleSet& rules, const RoverPlay& play, const std::string&
   const auto after = model.measure();
   if (after.standing_s > 2)
     result.stands_after_s = std::max(0.0, seconds(watched) - after.standing_s);
+  result.watched_s = seconds(watched);
   result.stood_s = after.stood_s - before.stood_s;
   result.goals = after.goals_reached - before.goals_reached;
   result.complaint = after.complaint;
+  result.calls = episode->calls();
   result.is_noticed = !episode->failures().empty();
   result.names = episode->blamed();
   result.strategies = episode->strategies();
-  for (const rover::Fault* fault : play.faults)
-    result.blamed += std::ranges::find(result.names, fault->cause) != result.names.end() ? 1 : 0;
+  result.blamed = right_of(play, result.names);
   return result;
 }
 

@@ -104,6 +104,8 @@ Routine RoverOracle::mend(const rover::Fault& fault, Time at) {
     co_await stand(fault.cause);
   } else if (remedies.starts_with("redeploy")) {
     co_await redeploy(fault.cause);
+    const Request set = SetParameter{fault.parameter, Value(0.5)};
+    if (remedies.ends_with("set_parameter")) (void)co_await ask(fault.cause, set, kPatience);
   } else if (remedies.starts_with("call")) {
     const Request call = CallService{remedies.substr(remedies.find('/')), ""};
     (void)co_await ask(fault.cause, call, kPatience);
@@ -122,8 +124,8 @@ Routine RoverOracle::redeploy(std::string component) {
   const Request start = StartProcess{};
   const Request read = Probe{};
   (void)co_await ask(component, stop, kPatience);
-  (void)co_await ask(component, start, kPatience);
   for (bool is_there = false; !is_there;) {
+    (void)co_await ask(component, start, kPatience);  // again, if it has exited
     co_await sleep(50ms);
     const Reply reply = co_await ask(component, read, 100ms);
     is_there = reply.outcome == Outcome::kDone;

@@ -17,6 +17,7 @@ using rover::Fault;
 using simulation::mix;
 
 constexpr double kStandsWithin = 3;  // seconds
+constexpr const char* kPlayLine = "{:<34} {:<8} {:<30} {:>8} {:>8} {:>7} {:>6}\n";
 constexpr std::array<const char*, kRoverMetrics> kNames = {"until healed, s", "stood, s", "goals",
                                                            "wrong restarts", "calls for a person"};
 
@@ -86,41 +87,34 @@ std::string seconds_or_dash(const std::optional<double>& value) {
   return value ? fmt::format("{:.1f} s", *value) : "–";
 }
 
-std::string render(const std::vector<std::vector<std::string>>& rows, RoverFormat format) {
-  std::vector<std::size_t> widths(rows.front().size());
-  for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-  }
-  std::string text;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    std::string line = format == RoverFormat::kMarkdown ? "|" : "";
-    for (std::size_t c = 0; c < widths.size(); ++c) {
-      line += format == RoverFormat::kMarkdown ? fmt::format(" {} |", rows[r][c])
-              : c == 0                         ? fmt::format("{:<{}}", rows[r][c], widths[c])
-                                               : fmt::format("  {:>{}}", rows[r][c], widths[c]);
-    }
-    text += line + "\n";
-    if (r > 0 || format != RoverFormat::kMarkdown) continue;
-    text += "| --- |";
-    for (std::size_t c = 1; c < widths.size(); ++c) text += " --: |";
-    text += "\n";
-  }
-  return text;
+// The first column is to the left, all others to the right.
+Table table_with(std::string id, std::string caption, const std::vector<const char*>& titles) {
+  Table table;
+  table.id = std::move(id);
+  table.caption = std::move(caption);
+  for (const char* title : titles) table.columns.push_back({.title = title});
+  table.columns.front().align = Align::kLeft;
+  return table;
+}
+
+bool stands_in_time(const RoverResult& result) {
+  return result.stands_after_s && *result.stands_after_s <= kStandsWithin;
 }
 
 }  // namespace
 
-std::vector<RoverPlay> plays_of(const RoverCampaign& campaign) {
+std::vector<rover::Play> plays_of(const RoverCampaign& campaign) {
   using enum RoverCampaign::Faults;
   const auto all = campaign.faults == kSingle  ? singles()
                    : campaign.faults == kPairs ? pairs()
                                                : triples(campaign.triples, campaign.seed);
-  std::vector<RoverPlay> plays;
-  for (const auto& faults : all) plays.push_back({faults, mix(campaign.seed + mix(plays.size()))});
+  std::vector<rover::Play> plays;
+  for (const auto& faults : all)
+    plays.push_back(rover::play_of(faults, mix(campaign.seed + mix(plays.size()))));
   return plays;
 }
 
-RoverResults play_all(const RuleSet& rules, const std::vector<RoverPlay>& plays,
+RoverResults play_all(const RuleSet& rules, const std::vector<rover::Play>& plays,
                       const RoverCampaign& campaign) {
   RoverResults results(campaign.managers.size());
   const std::size_t count = plays.size();
@@ -150,16 +144,17 @@ double value_of(RoverMetric metric, const RoverResult& result) {
   return 0;
 }
 
-RoverRow row_of(const std::string& manager, const std::vector<RoverPlay>& plays,
+RoverRow row_of(const std::string& manager, const std::vector<rover::Play>& plays,
                 const std::vector<RoverResult>& results) {
   RoverRow row{.manager = manager};
   std::vector<double> healed_s;
   for (std::size_t i = 0; i < plays.size(); ++i) {
     const RoverResult& result = results[i];
     row.wrong_restarts += result.wrong_restarts;
+    if (result.collisions) row.collisions = row.collisions.value_or(0) + *result.collisions;
     if (!plays[i].is_fixable()) {
       ++row.unfixable;
-      row.stands += result.stands_after_s && *result.stands_after_s <= kStandsWithin ? 1 : 0;
+      row.stands += stands_in_time(result) ? 1 : 0;
       continue;
     }
     ++row.plays;
@@ -167,7 +162,7 @@ RoverRow row_of(const std::string& manager, const std::vector<RoverPlay>& plays,
     row.blamed += result.blamed;
     row.calls += result.calls;
     row.stood_s.add(result.stood_s);
-    row.goals_an_hour.add(result.goals * 3600 / seconds(RoverTimes::kWatched));
+    row.goals_an_hour.add(result.goals * 3600 / result.watched_s);
     if (result.healed_s) healed_s.push_back(*result.healed_s);
   }
   row.healed = static_cast<int>(healed_s.size());
@@ -176,7 +171,7 @@ RoverRow row_of(const std::string& manager, const std::vector<RoverPlay>& plays,
   return row;
 }
 
-std::vector<RoverComparison> compare(const std::vector<RoverPlay>& plays,
+std::vector<RoverComparison> compare(const std::vector<rover::Play>& plays,
                                      const std::vector<RoverResult>& first,
                                      const std::vector<RoverResult>& second) {
   std::vector<RoverComparison> all;
@@ -208,54 +203,80 @@ std::vector<RoverComparison> compare(const std::vector<RoverPlay>& plays,
   return all;
 }
 
-std::string table_of(const std::vector<RoverRow>& rows, RoverFormat format) {
-  std::vector<std::vector<std::string>> cells = {{"manager", "healed", "median", "95 %", "stood",
-                                                  "goals an hour", "wrong restarts", "blamed right",
-                                                  "calls", "stands within 3 s"}};
-  for (const RoverRow& row : rows)
-    cells.push_back(
-        {row.manager, fmt::format("{} of {}", row.healed, row.plays), seconds_or_dash(row.median_s),
-         seconds_or_dash(row.late_s), fmt::format("{:.1f} s", row.stood_s.mean()),
-         fmt::format("{:.0f}", row.goals_an_hour.mean()), fmt::format("{}", row.wrong_restarts),
-         fmt::format("{} of {}", row.blamed, row.faults), fmt::format("{}", row.calls),
-         fmt::format("{} of {}", row.stands, row.unfixable)});
-  return render(cells, format);
+Table table_of(const std::vector<RoverRow>& rows) {
+  Table table = table_with("rover", "Faults of the rover, by manager",
+                           {"manager", "healed", "median", "95 %", "stood", "goals an hour",
+                            "wrong restarts", "blamed right", "calls", "stands within 3 s"});
+  const bool is_live = !rows.empty() && rows.front().collisions;
+  if (is_live) table.columns.push_back({.title = "collisions"});
+  for (const RoverRow& row : rows) {
+    table.rows.push_back({{row.manager},
+                          {fmt::format("{} of {}", row.healed, row.plays)},
+                          {seconds_or_dash(row.median_s)},
+                          {seconds_or_dash(row.late_s)},
+                          {fmt::format("{:.1f} s", row.stood_s.mean())},
+                          {fmt::format("{:.0f}", row.goals_an_hour.mean())},
+                          {fmt::format("{}", row.wrong_restarts)},
+                          {fmt::format("{} of {}", row.blamed, row.faults)},
+                          {fmt::format("{}", row.calls)},
+                          {fmt::format("{} of {}", row.stands, row.unfixable)}});
+    if (is_live) table.rows.back().push_back({fmt::format("{}", row.collisions.value_or(0))});
+  }
+  return table;
 }
 
-std::string comparisons_of(const std::string& name, const RoverCampaign& campaign,
-                           const std::vector<RoverPlay>& plays, const RoverResults& results,
-                           RoverFormat format) {
+Table comparisons_of(const std::string& name, const RoverCampaign& campaign,
+                     const std::vector<rover::Play>& plays, const RoverResults& results) {
   const auto& managers = campaign.managers;
+  Table table =
+      table_with("rover-comparisons", name + " against the others",
+                 {"against", "metric", name.c_str(), "other", "plays better", "worse", "p"});
   const auto found = std::ranges::find(managers, name);
-  if (found == managers.end() || managers.size() < 2) return "";
+  if (found == managers.end()) return table;
   const auto& ours = results[static_cast<std::size_t>(found - managers.begin())];
-  std::vector<std::vector<std::string>> cells = {
-      {name + " against", "metric", name, "other", "plays better", "worse", "p"}};
   for (std::size_t m = 0; m < managers.size(); ++m) {
     if (managers[m] == name) continue;
     for (const RoverComparison& each : compare(plays, ours, results[m]))
-      cells.push_back({managers[m], kNames[static_cast<std::size_t>(each.metric)],
-                       fmt::format("{:.2f}", each.first), fmt::format("{:.2f}", each.second),
-                       fmt::format("{}", each.better), fmt::format("{}", each.worse),
-                       each.p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", each.p)});
+      table.rows.push_back({{managers[m]},
+                            {kNames[static_cast<std::size_t>(each.metric)]},
+                            {fmt::format("{:.2f}", each.first)},
+                            {fmt::format("{:.2f}", each.second)},
+                            {fmt::format("{}", each.better)},
+                            {fmt::format("{}", each.worse)},
+                            {each.p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", each.p)}});
   }
-  return render(cells, format);
+  return table;
 }
 
-std::string left_of(const std::string& manager, const std::vector<RoverPlay>& plays,
+std::string left_of(const std::string& manager, const std::vector<rover::Play>& plays,
                     const std::vector<RoverResult>& results) {
   std::string text;
   for (std::size_t i = 0; i < plays.size(); ++i) {
     const RoverResult& result = results[i];
     const bool is_fixable = plays[i].is_fixable();
     if (is_fixable && result.healed_s) continue;
-    const bool stands = result.stands_after_s && *result.stands_after_s <= kStandsWithin;
-    if (!is_fixable && stands) continue;
-    text += fmt::format("{}: {} {}: {}\n", manager, plays[i].name(),
+    if (!is_fixable && stands_in_time(result)) continue;
+    text += fmt::format("{}: {} {}: {}\n", manager, plays[i].name,
                         is_fixable ? "did not heal" : "did not stand within 3 s",
                         result.complaint.empty() ? "a failure is open" : result.complaint);
   }
   return text;
+}
+
+std::string header_of_plays() {
+  return fmt::format(kPlayLine, "fault", "noticed", "blamed", "healed", "stood", "others", "goals");
+}
+
+std::string line_of(const rover::Play& play, const RoverResult& result) {
+  const auto right = std::ranges::find_if(
+      result.names, [&](const std::string& name) { return play.is_cause(name); });
+  std::string blamed = right != result.names.end() ? *right : "none";
+  if (right == result.names.end() && !result.names.empty())
+    blamed = "not it: " + result.names.front();
+  std::string healed = result.healed_s ? seconds_or_dash(result.healed_s) : "no";
+  if (!play.is_fixable()) healed = result.stands_after_s ? "stops" : "drives";
+  return fmt::format(kPlayLine, play.name, result.is_noticed ? "yes" : "no", blamed, healed,
+                     seconds_or_dash(result.stood_s), result.wrong_restarts, result.goals);
 }
 
 }  // namespace culprit::study

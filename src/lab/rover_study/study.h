@@ -8,6 +8,7 @@
 
 #include "rover_study/play.h"
 #include "study/statistics/moments.h"
+#include "study/tables/table.h"
 
 namespace culprit::study {
 
@@ -25,11 +26,11 @@ struct RoverCampaign {
 };
 
 // The same campaign, the same plays: the play of a place has the same seed under each manager.
-std::vector<RoverPlay> plays_of(const RoverCampaign& campaign);
+std::vector<rover::Play> plays_of(const RoverCampaign& campaign);
 
 // Each play under each manager: results[manager][play].
 using RoverResults = std::vector<std::vector<RoverResult>>;
-RoverResults play_all(const RuleSet& rules, const std::vector<RoverPlay>& plays,
+RoverResults play_all(const RuleSet& rules, const std::vector<rover::Play>& plays,
                       const RoverCampaign& campaign);
 
 // The compared figures, of the plays in which something mends each fault. Less is better, but for goals.
@@ -49,11 +50,12 @@ struct RoverRow {
   Moments stood_s{};
   Moments goals_an_hour{};
   int wrong_restarts = 0;
+  std::optional<int> collisions{};  // live only
   int calls = 0;
   int unfixable = 0;  // plays with a fault that only a person mends
   int stands = 0;     // of these: the rover stood within 3 s, for good
 };
-RoverRow row_of(const std::string& manager, const std::vector<RoverPlay>& plays,
+RoverRow row_of(const std::string& manager, const std::vector<rover::Play>& plays,
                 const std::vector<RoverResult>& results);
 
 // `first` against `second` in one metric: means over the plays, how many plays are better and worse, and the p of Wilcoxon's
@@ -66,20 +68,21 @@ struct RoverComparison {
   int worse = 0;
   double p = 1;
 };
-std::vector<RoverComparison> compare(const std::vector<RoverPlay>& plays,
+std::vector<RoverComparison> compare(const std::vector<rover::Play>& plays,
                                      const std::vector<RoverResult>& first,
                                      const std::vector<RoverResult>& second);
 
 // ---- for people
 
-enum class RoverFormat : std::uint8_t { kText, kMarkdown };
-std::string table_of(const std::vector<RoverRow>& rows, RoverFormat format);
-// `name` against each other manager of the campaign.
-std::string comparisons_of(const std::string& name, const RoverCampaign& campaign,
-                           const std::vector<RoverPlay>& plays, const RoverResults& results,
-                           RoverFormat format);
+Table table_of(const std::vector<RoverRow>& rows);
+// `name` against each other manager of the campaign. Without rows: there is nothing to compare.
+Table comparisons_of(const std::string& name, const RoverCampaign& campaign,
+                     const std::vector<rover::Play>& plays, const RoverResults& results);
 // The plays of this manager that did not heal, and those that did not stand in time: one a line.
-std::string left_of(const std::string& manager, const std::vector<RoverPlay>& plays,
+std::string left_of(const std::string& manager, const std::vector<rover::Play>& plays,
                     const std::vector<RoverResult>& results);
+// One play, to fill a line while others go on: fault, noticed, blamed, healed, time stood, wrong restarts, goals.
+std::string header_of_plays();
+std::string line_of(const rover::Play& play, const RoverResult& result);
 
 }  // namespace culprit::study

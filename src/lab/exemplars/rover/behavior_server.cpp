@@ -8,8 +8,7 @@ namespace {
 
 class BehaviorServer final : public RoverNode {
  public:
-  explicit BehaviorServer(Settings settings)
-      : RoverNode({.name = "/behavior_server", .is_managed = true}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {
@@ -57,8 +56,6 @@ class BehaviorServer final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_behavior_server(Settings settings) {
-  return std::make_unique<BehaviorServer>(std::move(settings));
-}
+const Process kBehaviorServer = {"behavior_server", make<BehaviorServer>};
 
 }  // namespace culprit::rover

@@ -11,8 +11,7 @@ namespace {
 
 class BtNavigator final : public RoverNode {
  public:
-  explicit BtNavigator(Settings settings)
-      : RoverNode({.name = "/bt_navigator", .is_managed = true}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   using Clock = ros2::Executor::Clock;
@@ -49,9 +48,8 @@ class BtNavigator final : public RoverNode {
       case Doing::kNothing:
         return;
       case Doing::kPlanning:
-        return plan_.is_running() ? recover() : plan();  // no answer until it was due
       case Doing::kFollowing:
-        return plan_.is_running() ? recover() : plan();
+        return plan_.is_running() ? recover() : plan();  // no answer until it was due
       case Doing::kRecovering:
         doing_ = Doing::kPlanning;
         return;
@@ -121,8 +119,6 @@ class BtNavigator final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_bt_navigator(Settings settings) {
-  return std::make_unique<BtNavigator>(std::move(settings));
-}
+const Process kBtNavigator = {"bt_navigator", make<BtNavigator>};
 
 }  // namespace culprit::rover

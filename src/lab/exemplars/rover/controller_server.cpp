@@ -24,11 +24,8 @@ constexpr double kStopsAt = 0.25;    // metres
 class ControllerServer final : public RoverNode {
  public:
   explicit ControllerServer(Settings settings)
-      : RoverNode({.name = "/controller_server",
-                   .is_managed = true,
-                   .parameters = {{"max_speed", kMaxSpeed}},
-                   .cleared_by_activate = {"costmap_frozen"}},
-                  settings) {}
+      : RoverNode(settings, {.parameters = {{"max_speed", kMaxSpeed}},
+                             .cleared_by_activate = {"costmap_frozen"}}) {}
 
  private:
   void set_up() override {
@@ -139,8 +136,6 @@ class ControllerServer final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_controller_server(Settings settings) {
-  return std::make_unique<ControllerServer>(std::move(settings));
-}
+const Process kControllerServer = {"controller_server", make<ControllerServer>};
 
 }  // namespace culprit::rover

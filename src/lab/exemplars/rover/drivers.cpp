@@ -12,7 +12,7 @@ namespace {
 // no lifecycle transition helps.
 class LidarDriver final : public RoverNode {
  public:
-  explicit LidarDriver(Settings settings) : RoverNode({.name = "/lidar_driver"}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {
@@ -37,17 +37,22 @@ class LidarDriver final : public RoverNode {
   std::optional<ros2::Publisher<msg::LaserScan>> scan_;
 };
 
-// camera_driver: /camera/image_raw at 4 Hz. Faults: "stall", "dark".
+// camera_driver: /camera/image_raw at 4 Hz; every 2 s if the parameter exposure is above 1.
+//
+// Faults: "stall", "dark", "dim" (fog on the lens: no exposure helps).
 class CameraDriver final : public RoverNode {
  public:
-  explicit CameraDriver(Settings settings) : RoverNode({.name = "/camera_driver"}, settings) {}
+  explicit CameraDriver(Settings settings)
+      : RoverNode(settings, {.parameters = {{"exposure", 1.0}}}) {}
 
  private:
   void set_up() override {
     offer(image_, "/camera/image_raw", ros2::qos::kSensorData);
     hear<ros2::msg::Image>("/hardware/camera", ros2::qos::kSensorData,
                            [this](ros2::msg::Image image) {
-                             if (has("stall")) return;
+                             const bool is_long = parameter<double>("exposure") > 1;
+                             if (has("stall") || (is_long && ++count_ % 8 != 0)) return;
+                             if (has("dim")) image.data.assign(image.data.size(), 8);
                              if (has("dark")) image.data.assign(image.data.size(), 0);
                              brightness_ = 0;
                              for (const std::uint8_t pixel : image.data) brightness_ += pixel;
@@ -59,6 +64,7 @@ class CameraDriver final : public RoverNode {
     return {{"brightness", std::to_string(brightness_)}};
   }
 
+  int count_ = 0;
   double brightness_ = 0;
   std::optional<ros2::Publisher<ros2::msg::Image>> image_;
 };
@@ -66,7 +72,7 @@ class CameraDriver final : public RoverNode {
 // imu_driver: /imu at 20 Hz. Faults: "stall", "bias" (0.5 rad/s).
 class ImuDriver final : public RoverNode {
  public:
-  explicit ImuDriver(Settings settings) : RoverNode({.name = "/imu_driver"}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {
@@ -84,11 +90,12 @@ class ImuDriver final : public RoverNode {
 // base_driver: drives as /cmd_vel says, and stops if nothing came for 0.5 s. Integrates the wheels' encoders: /odom and
 // odom -> base_link on /tf, 20 Hz. base_link -> laser on /tf_static. Passes on /battery_state. Without the parameter motor_power it stands, and senses.
 //
-// Faults: "odom_frozen" (encoders read zero), "tf_stopped", "tf_late" (stamps 3 s old), "stall" (obeys no command).
+// Faults: "odom_frozen" (encoders read zero), "tf_stopped", "tf_late" (stamps 3 s old), "stall" (obeys no command),
+// "slip" (the wheels turn, but the rover does not drive forward).
 class BaseDriver final : public RoverNode {
  public:
   explicit BaseDriver(Settings settings)
-      : RoverNode({.name = "/base_driver", .parameters = {{"motor_power", true}}}, settings) {}
+      : RoverNode(settings, {.parameters = {{"motor_power", true}}}) {}
 
  private:
   void set_up() override {
@@ -109,12 +116,14 @@ class BaseDriver final : public RoverNode {
     every(50ms, [this] {
       const bool is_fresh = ros2::Executor::Clock::now() - commanded_ < 500ms;
       const bool drives = is_fresh && parameter<bool>("motor_power") && !has("stall");
-      motors_->publish(drives ? command_ : msg::Twist{});
+      ordered_ = drives ? command_ : msg::Twist{};
+      motors_->publish(to_twist(has("slip") ? 0 : ordered_.linear.x, ordered_.angular.z));
     });
   }
 
   void on_wheels(msg::Twist twist) {
     if (has("odom_frozen")) twist = {};
+    if (has("slip")) twist.linear.x = ordered_.linear.x;
     pose_ = moved(pose_, twist.linear.x, twist.angular.z, 0.05);
     msg::Header header = header_now("odom");
     if (has("tf_late")) header.stamp.sec -= 3;
@@ -130,6 +139,7 @@ class BaseDriver final : public RoverNode {
 
   Pose2 pose_;
   msg::Twist command_;
+  msg::Twist ordered_;  // of the wheels
   ros2::Executor::Clock::time_point commanded_{};
   std::optional<ros2::Publisher<msg::Twist>> motors_;
   std::optional<ros2::Publisher<msg::Odometry>> odom_;
@@ -140,17 +150,9 @@ class BaseDriver final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_lidar_driver(Settings settings) {
-  return std::make_unique<LidarDriver>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_camera_driver(Settings settings) {
-  return std::make_unique<CameraDriver>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_imu_driver(Settings settings) {
-  return std::make_unique<ImuDriver>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_base_driver(Settings settings) {
-  return std::make_unique<BaseDriver>(std::move(settings));
-}
+const Process kLidarDriver = {"lidar_driver", make<LidarDriver>};
+const Process kCameraDriver = {"camera_driver", make<CameraDriver>};
+const Process kImuDriver = {"imu_driver", make<ImuDriver>};
+const Process kBaseDriver = {"base_driver", make<BaseDriver>};
 
 }  // namespace culprit::rover

@@ -5,7 +5,6 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <future>
 
 #include "base/live_clock.h"
 #include "exemplars/node_process.h"
@@ -15,16 +14,10 @@
 namespace culprit::rover {
 namespace {
 
-constexpr double kStandsAfter = 6;  // seconds
-constexpr double kLostAt = 0.8;     // metres
-
-// Begins a call that ends in a callback; gives what the callback gets.
+// Blocks until the call has ended.
 template <class T, class Begin>
 Expected<T> answer_to(Begin begin) {
-  const auto promise = std::make_shared<std::promise<Expected<T>>>();
-  auto future = promise->get_future();
-  begin([promise](Expected<T> answer) { promise->set_value(std::move(answer)); });
-  return future.get();
+  return sunset::ask<T>(begin).get();
 }
 
 bool is_stopped(int pid) {
@@ -35,19 +28,11 @@ bool is_stopped(int pid) {
   return end != std::string::npos && text.size() > end + 2 && text[end + 2] == 'T';
 }
 
-bool is_server(std::string_view process) {
-  const auto has = [process](std::span<const std::string_view> all) {
-    return std::ranges::any_of(all,
-                               [&](std::string_view each) { return each.substr(1) == process; });
-  };
-  return has(kLocalization) || has(kNavigation);
-}
-
 }  // namespace
 
-Expected<std::unique_ptr<Experiment>> Experiment::start(
-    const ros2::ParticipantOptions& participant) {
-  std::unique_ptr<Experiment> experiment(new Experiment(participant));
+Expected<std::unique_ptr<Experiment>> Experiment::start(const ros2::ParticipantOptions& participant,
+                                                        std::filesystem::path state) {
+  std::unique_ptr<Experiment> experiment(new Experiment(participant, std::move(state)));
   if (auto opened = experiment->open(); !opened) return Error{opened.error()};
   experiment->thread_ = std::thread([e = experiment.get()] { e->executor_.run(); });
   return experiment;
@@ -121,7 +106,7 @@ void Experiment::on_diagnostics(const ros2::msg::DiagnosticArray& array) {
 void Experiment::poll_states() {
   for (const Process& process : processes()) {
     const std::string name(process.name);
-    if (!is_server(name) || std::exchange(is_polled_[name], true)) continue;
+    if (!is_server("/" + name) || std::exchange(is_polled_[name], true)) continue;
     control(name).get_state([this, name](const Expected<LifecycleState>& state) {
       is_polled_[name] = false;
       const MutexLock lock(mutex_);
@@ -139,16 +124,14 @@ Measurements Experiment::measure() const {
   const MutexLock lock(mutex_);
   Measurements result = seen_;
   result.standing_s = seconds(live_now() - moved_);
+  std::string inactive;
   for (const Process& process : processes()) {
-    const auto state = states_.find(std::string(process.name));
+    const std::string name(process.name);
+    const auto state = states_.find(name);
     const bool is_active = state != states_.end() && state->second == LifecycleState::kActive;
-    if (is_server(process.name) && !is_active && result.complaint.empty())
-      result.complaint = std::string(process.name) + " is not active";
+    if (is_server("/" + name) && !is_active && inactive.empty()) inactive = name;
   }
-  if (result.complaint.empty() && result.pose_error_m > kLostAt)
-    result.complaint = "the rover does not know where it is";
-  if (result.complaint.empty() && result.standing_s > kStandsAfter)
-    result.complaint = "the rover stands";
+  result.complain(inactive);
   return result;
 }
 
@@ -163,6 +146,10 @@ Expected<void> Experiment::inject(const Fault& fault) {
     });
   const auto pids = processes_of("rover-node", fault.process, participant_.domain);
   if (pids.empty()) return Error{fault.process + " has no process on this machine"};
+  if (fault.way == Way::kNextStart &&
+      !(std::ofstream(next_start_of(fault.process))
+        << fault.parameter << ' ' << std::get<double>(fault.value) << std::flush))
+    return Error{"cannot write in " + state_.string()};
   for (const int pid : pids) {
     if (kill(pid, fault.way == Way::kStop ? SIGSTOP : SIGKILL) != 0)
       return Error{"process " + std::to_string(pid) + ": " + std::strerror(errno)};
@@ -170,12 +157,19 @@ Expected<void> Experiment::inject(const Fault& fault) {
   return {};
 }
 
+Expected<Value> Experiment::parameter(const std::string& process, const std::string& name) {
+  return answer_to<Value>([&](auto then) { control(process).get_parameter(name, then); });
+}
+
 bool Experiment::is_over(const Fault& fault) {
-  if (fault.name == "kidnapped") return measure().pose_error_m < kLostAt;
+  if (fault.name == "kidnapped") return measure().pose_error_m < Measurements::kLostAt;
   if (fault.way == Way::kParameter) {
-    const auto value = answer_to<Value>(
-        [&](auto then) { control(fault.process).get_parameter(fault.parameter, then); });
+    const auto value = parameter(fault.process, fault.parameter);
     return value && *value != fault.value;
+  }
+  if (fault.way == Way::kNextStart) {
+    const auto value = parameter(fault.process, fault.parameter);  // it may have none of that name
+    return parameter(fault.process, "fault") && !(value && *value == fault.value);
   }
   if (fault.way == Way::kDeactivate) {
     const auto state =
@@ -190,10 +184,14 @@ void Experiment::clear() {
   for (const Process& process : processes()) {
     for (const int pid : processes_of("rover-node", process.name, participant_.domain))
       kill(pid, SIGCONT);
+    std::error_code error;
+    std::filesystem::remove(next_start_of(std::string(process.name)), error);
   }
   const std::vector<std::pair<std::string, std::pair<std::string, Value>>> healthy = {
       {"world", {"lidar_plugged", Value(true)}},
+      {"world", {"lidar_flaps", Value(false)}},
       {"world", {"battery", Value(1.0)}},
+      {"camera_driver", {"exposure", Value(1.0)}},
       {"base_driver", {"motor_power", Value(true)}},
       {"e_stop", {"stopped", Value(false)}},
       {"controller_server", {"max_speed", Value(0.5)}}};

@@ -2,6 +2,7 @@
 // repairs anything but in clear(). All members may be called from any thread.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -20,21 +21,11 @@
 
 namespace culprit::rover {
 
-struct Measurements {
-  int goals_reached = 0;
-  int goals_failed = 0;
-  int collisions = 0;
-  double driven_m = 0;
-  double stood_s = 0;       // since restart_measuring()
-  double standing_s = 0;    // until now
-  double pose_error_m = 0;  // of amcl
-  // The fault that can be seen: a server is not active, the rover does not know where it is, or it stands. Empty: none.
-  std::string complaint{};
-};
-
 class Experiment {
  public:
-  static Expected<std::unique_ptr<Experiment>> start(const ros2::ParticipantOptions& participant);
+  // `state`: of the rover's processes.
+  static Expected<std::unique_ptr<Experiment>> start(const ros2::ParticipantOptions& participant,
+                                                     std::filesystem::path state);
   ~Experiment();
 
   // Blocks until the node has answered. An error: the fault is not in place, or we cannot tell.
@@ -48,14 +39,20 @@ class Experiment {
   Measurements measure() const;
 
  private:
-  explicit Experiment(const ros2::ParticipantOptions& participant) : participant_(participant) {}
+  Experiment(const ros2::ParticipantOptions& participant, std::filesystem::path state)
+      : participant_(participant), state_(std::move(state)) {}
   Expected<void> open();
+  std::filesystem::path next_start_of(const std::string& process) const {
+    return state_ / ("next_" + process);
+  }
+  Expected<Value> parameter(const std::string& process, const std::string& name);
   sunset::NodeControl& control(const std::string& process) { return *controls_.at(process); }
   void on_truth(const msg::Odometry& truth);
   void on_diagnostics(const ros2::msg::DiagnosticArray& array);
   void poll_states();
 
   const ros2::ParticipantOptions participant_;
+  const std::filesystem::path state_;
   ros2::Executor executor_;
   std::unique_ptr<ros2::Context> context_;
   std::unique_ptr<ros2::Node> node_;

@@ -1,6 +1,7 @@
 #include "exemplars/rover/faults.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace culprit::rover {
 namespace {
@@ -41,10 +42,10 @@ std::vector<Fault> make_faults() {
                    "start_group, activate"});
   for (const char* fault : {"stall", "zeros", "nan", "frozen", "slow", "wrong_frame", "hang"})
     all.push_back(shown("lidar_driver", fault, "redeploy"));
-  for (const char* fault : {"stall", "dark", "leak"})
+  for (const char* fault : {"stall", "dark", "dim", "leak"})
     all.push_back(shown("camera_driver", fault, "redeploy"));
   for (const char* fault : {"stall", "bias"}) all.push_back(shown("imu_driver", fault, "redeploy"));
-  for (const char* fault : {"odom_frozen", "tf_stopped", "tf_late", "crash"})
+  for (const char* fault : {"odom_frozen", "tf_stopped", "tf_late", "crash", "slip"})
     all.push_back(shown("base_driver", fault, "redeploy"));
   for (const char* fault : {"stall", "tf_stopped"})
     all.push_back(shown("amcl", fault, "restart, redeploy"));
@@ -53,12 +54,20 @@ std::vector<Fault> make_faults() {
   all.push_back(shown("controller_server", "costmap_frozen", "restart, redeploy"));
   all.push_back(shown("controller_server", "oscillate", "redeploy"));
   all.push_back(shown("bt_navigator", "hang", "redeploy"));
+  all.push_back(shown("velocity_smoother", "best_effort", "redeploy"));
+  all.push_back({"controller_server:setting_lost", Way::kNextStart, "controller_server",
+                 "max_speed", Value(0.1), "controller_server", "redeploy, then set_parameter"});
+  all.push_back({"imu:busy", Way::kNextStart, "imu_driver", "busy_s", Value(8.0), "imu",
+                 "redeploy, again and again"});
+  all.push_back({"camera:slow_start", Way::kNextStart, "camera_driver", "start_s", Value(8.0),
+                 "camera", "redeploy"});
   all.push_back({"controller_server:slow_setting", Way::kParameter, "controller_server",
                  "max_speed", Value(0.05), "controller_server", "set_parameter, redeploy"});
   all.push_back({"kidnapped", Way::kParameter, "world", "kidnap", Value("10 5.9 1"), "amcl",
                  "call /reinitialize_global_localization"});
   all.push_back(
       {"lidar:unplugged", Way::kParameter, "world", "lidar_plugged", Value(false), "lidar", ""});
+  all.push_back({"lidar:flaps", Way::kParameter, "world", "lidar_flaps", Value(true), "lidar", ""});
   all.push_back({"battery:sag", Way::kParameter, "world", "battery", Value(0.1), "base", ""});
   return all;
 }
@@ -70,9 +79,45 @@ const std::vector<Fault>& faults() {
   return kAll;
 }
 
-const Fault* find_fault(std::string_view name) {
-  const auto found = std::ranges::find(faults(), name, &Fault::name);
-  return found == faults().end() ? nullptr : &*found;
+void Measurements::complain(const std::string& inactive) {
+  constexpr double kStandsAfter = 6;  // seconds
+  complaint = !inactive.empty()           ? inactive + " is not active"
+              : pose_error_m > kLostAt    ? "the rover does not know where it is"
+              : standing_s > kStandsAfter ? "the rover stands"
+                                          : "";
+}
+
+std::vector<std::string> Play::fault_names() const {
+  std::vector<std::string> names;
+  for (const Fault* fault : faults) names.push_back(fault->name);
+  return names;
+}
+
+bool Play::is_fixable() const { return std::ranges::all_of(faults, &Fault::is_fixable); }
+
+bool Play::is_cause(std::string_view component) const {
+  return std::ranges::find(faults, component, &Fault::cause) != faults.end();
+}
+
+Play play_of(std::vector<const Fault*> faults, std::uint64_t seed) {
+  Play play{"", std::move(faults), seed};
+  for (const Fault* fault : play.faults) play.name += (play.name.empty() ? "" : "+") + fault->name;
+  return play;
+}
+
+Expected<Play> find_play(std::string_view name, std::uint64_t seed) {
+  std::vector<const Fault*> play;
+  std::istringstream text{std::string(name)};
+  for (std::string each; std::getline(text, each, '+');) {
+    const auto found = std::ranges::find(faults(), each, &Fault::name);
+    if (found == faults().end()) {
+      std::string all;
+      for (const Fault& known : faults()) all += " " + known.name;
+      return Error{"the rover has no fault '" + each + "'; there are:" + all};
+    }
+    play.push_back(&*found);
+  }
+  return play_of(std::move(play), seed);
 }
 
 }  // namespace culprit::rover

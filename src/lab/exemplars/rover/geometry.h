@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -39,6 +40,13 @@ inline Pose2 moved(const Pose2& from, double speed, double turn, double dt) {
   const double yaw = from.yaw + turn * dt / 2;
   return {from.x + speed * dt * std::cos(yaw), from.y + speed * dt * std::sin(yaw),
           normalized(from.yaw + turn * dt)};
+}
+
+// Nearly normal, with standard deviation 1: a sum of uniform draws, for std::normal_distribution differs between standard libraries.
+inline double noise(std::mt19937_64& random) {
+  double sum = -2;
+  for (int i = 0; i < 4; ++i) sum += static_cast<double>(random() >> 11) * 0x1p-53;
+  return sum * std::numbers::sqrt3;
 }
 
 inline msg::Quaternion quaternion(double yaw) {

@@ -1,6 +1,4 @@
-#include "exemplars/rover/lifecycle_manager.h"
-
-#include <algorithm>
+// The manager runs on a thread of its own, which blocks in its requests; its node answers meanwhile.
 #include <atomic>
 #include <deque>
 #include <future>
@@ -11,8 +9,8 @@
 
 #include "base/live_clock.h"
 #include "base/mutex.h"
-#include "exemplars/rover/geometry.h"
-#include "exemplars/rover/messages.h"
+#include "exemplars/rover/bond_manager.h"
+#include "exemplars/rover/nodes.h"
 #include "ros2/lifecycle.h"
 #include "ros2/node.h"
 #include "ros2/services.h"
@@ -23,8 +21,6 @@ namespace {
 using namespace std::chrono_literals;
 using ros2::TransitionId;
 
-constexpr Duration kBondTimeout = 4s;
-constexpr Duration kRespawn = 10s;
 constexpr Duration kForEver = std::chrono::hours(24);
 
 class Server {
@@ -43,11 +39,10 @@ class Server {
 
   const std::string& name() const { return name_; }
   bool is_there() const { return change_->is_ready(); }
-  void begin_bond() { heard_ = live_now(); }
+  Time heard() const { return heard_; }
   void on_bond(const msg::BondStatus& bond) {
     if ("/" + bond.id == name_ && bond.active) heard_ = live_now();
   }
-  bool is_bond_broken() const { return later(heard_.load(), kBondTimeout) < live_now(); }
 
   // Blocks until the server has answered, in whichever way.
   bool change(TransitionId transition) {
@@ -110,14 +105,29 @@ class LifecycleManager {
 
   // For ever.
   void run() {
-    while (!are_all_there()) std::this_thread::sleep_for(100ms);
-    is_active_ = startup();
-    for (;; std::this_thread::sleep_for(200ms)) {
-      if (const auto request = next_request()) {
-        const bool is_done = manage(request->command);
-        request->answer(ros2::encode(srv::ManageLifecycleNodes::Response{is_done}));
+    BondManager manager(
+        {.count = servers_.size(),
+         .reach =
+             [this](std::size_t s) {
+               using enum BondManager::Reach;
+               return servers_[s]->is_there() ? kAnswers : kNobody;
+             },
+         .pid = [](std::size_t) { return 0; },
+         .change = [this](std::size_t s, Transition t) { return change(*servers_[s], t); },
+         .answer_time = [] { return Duration::zero(); }},
+        true);
+    manager.begin(live_now());
+    for (;; std::this_thread::sleep_for(manager.is_changing() ? 10ms : 100ms)) {
+      for (std::size_t s = 0; s < servers_.size(); ++s) manager.on_bond(s, servers_[s]->heard());
+      while (const auto request = next_request()) {
+        manager.ask(request->command, [answer = request->answer](bool is_done) {
+          answer(ros2::encode(srv::ManageLifecycleNodes::Response{is_done}));
+        });
       }
-      if (is_active_ && is_any_bond_broken()) recover();
+      const bool was_resetting = manager.is_resetting();
+      manager.step(live_now());
+      if (manager.is_resetting() && !was_resetting)
+        node_->log(ros2::Severity::kError, "a bond is broken; resetting all nodes");
     }
   }
 
@@ -135,65 +145,21 @@ class LifecycleManager {
     return next;
   }
 
-  bool are_all_there() const {
-    return std::ranges::all_of(servers_, [](const auto& each) { return each->is_there(); });
-  }
-  bool is_any_bond_broken() const {
-    return std::ranges::any_of(servers_, [](const auto& each) { return each->is_bond_broken(); });
-  }
-
-  bool manage(std::uint8_t command) {
-    switch (command) {
-      case 0:
-        return is_active_ = startup();
-      case 1:
-        is_active_ = false;
-        return backwards(TransitionId::kDeactivate);
-      case 2:
-        return is_active_ = forwards(TransitionId::kActivate);
-      case 3:
-        is_active_ = false;
-        return reset();
-      default:
-        return false;
-    }
-  }
-
-  void recover() {
-    node_->log(ros2::Severity::kError, "a bond is broken; resetting all nodes");
-    is_active_ = false;
-    reset();
-    for (const Time end = later(live_now(), kRespawn); !are_all_there() && live_now() < end;)
-      std::this_thread::sleep_for(1s);
-    if (are_all_there()) is_active_ = startup();
-  }
-
-  bool startup() { return forwards(TransitionId::kConfigure) && forwards(TransitionId::kActivate); }
-  bool reset() { return backwards(TransitionId::kDeactivate) && backwards(TransitionId::kCleanup); }
-
-  bool forwards(TransitionId transition) {
-    for (const auto& server : servers_) {
-      if (server->change(transition)) continue;
+  bool change(Server& server, Transition transition) {
+    constexpr TransitionId kIds[] = {TransitionId::kConfigure, TransitionId::kCleanup,
+                                     TransitionId::kActivate, TransitionId::kDeactivate};
+    const bool agrees = server.change(kIds[static_cast<std::size_t>(transition)]);
+    const bool starts = transition == Transition::kConfigure || transition == Transition::kActivate;
+    if (!agrees && starts)
       node_->log(ros2::Severity::kError,
-                 "failed to bring up all requested nodes; " + server->name() + " refuses");
-      return false;
-    }
-    for (const auto& server : servers_) server->begin_bond();
-    return true;
-  }
-  bool backwards(TransitionId transition) {
-    for (auto server = servers_.rbegin(); server != servers_.rend(); ++server) {
-      if (!(*server)->is_there()) return false;
-      (*server)->change(transition);
-    }
-    return true;
+                 "failed to bring up all requested nodes; " + server.name() + " refuses");
+    return agrees;
   }
 
   std::unique_ptr<ros2::Node> node_;
   std::vector<std::unique_ptr<Server>> servers_;
   std::unique_ptr<ros2::Subscription> bonds_;
   std::unique_ptr<ros2::ServiceServer> manage_;
-  bool is_active_ = false;
   Mutex mutex_;
   std::deque<Request> requests_ CULPRIT_GUARDED_BY(mutex_);
 };

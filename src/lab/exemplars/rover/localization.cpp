@@ -14,8 +14,7 @@ constexpr ros2::Qos kLateJoiners{.durability = ros2::Durability::kTransientLocal
 // map_server: /map, for those who come later, too.
 class MapServer final : public RoverNode {
  public:
-  explicit MapServer(Settings settings)
-      : RoverNode({.name = "/map_server", .is_managed = true}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override { offer(map_, "/map", kLateJoiners); }
@@ -36,9 +35,7 @@ class MapServer final : public RoverNode {
 class Amcl final : public RoverNode {
  public:
   explicit Amcl(Settings settings)
-      : RoverNode(
-            {.name = "/amcl", .is_managed = true, .cleared_by_activate = {"stall", "tf_stopped"}},
-            settings) {}
+      : RoverNode(settings, {.cleared_by_activate = {"stall", "tf_stopped"}}) {}
 
  private:
   void set_up() override {
@@ -125,11 +122,7 @@ class Amcl final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_map_server(Settings settings) {
-  return std::make_unique<MapServer>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_amcl(Settings settings) {
-  return std::make_unique<Amcl>(std::move(settings));
-}
+const Process kMapServer = {"map_server", make<MapServer>};
+const Process kAmcl = {"amcl", make<Amcl>};
 
 }  // namespace culprit::rover

@@ -138,12 +138,6 @@ struct Empty {
   struct Response {};
 };
 
-struct ClearEntireCostmap {
-  static constexpr std::string_view kType = "nav2_msgs/srv/ClearEntireCostmap";
-  using Request = msg::Empty;  // its field is a std_msgs/Empty, which is this one byte
-  using Response = msg::Empty;
-};
-
 struct ManageLifecycleNodes {
   static constexpr std::string_view kType = "nav2_msgs/srv/ManageLifecycleNodes";
   struct Request {

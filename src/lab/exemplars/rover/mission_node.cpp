@@ -13,7 +13,7 @@ constexpr std::array<Pose2, 6> kGoals = {
 
 class MissionNode final : public RoverNode {
  public:
-  explicit MissionNode(Settings settings) : RoverNode({.name = "/mission"}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {
@@ -52,8 +52,6 @@ class MissionNode final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_mission(Settings settings) {
-  return std::make_unique<MissionNode>(std::move(settings));
-}
+const Process kMission = {"mission", make<MissionNode>, false};
 
 }  // namespace culprit::rover

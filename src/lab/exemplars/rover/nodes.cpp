@@ -1,26 +1,33 @@
 #include "exemplars/rover/nodes.h"
 
+#include <algorithm>
+
 namespace culprit::rover {
 
 std::span<const Process> processes() {
-  static constexpr Process kAll[] = {{"world", make_world, false},
-                                     {"lidar_driver", make_lidar_driver},
-                                     {"camera_driver", make_camera_driver},
-                                     {"imu_driver", make_imu_driver},
-                                     {"base_driver", make_base_driver},
-                                     {"map_server", make_map_server},
-                                     {"amcl", make_amcl},
-                                     {"planner_server", make_planner_server},
-                                     {"controller_server", make_controller_server},
-                                     {"behavior_server", make_behavior_server},
-                                     {"velocity_smoother", make_velocity_smoother},
-                                     {"bt_navigator", make_bt_navigator},
-                                     {"twist_mux", make_twist_mux},
-                                     {"e_stop", make_e_stop},
-                                     {"lifecycle_manager_localization", nullptr},
-                                     {"lifecycle_manager_navigation", nullptr},
-                                     {"mission", make_mission, false}};
+  static const Process kAll[] = {kWorld,
+                                 kLidarDriver,
+                                 kCameraDriver,
+                                 kImuDriver,
+                                 kBaseDriver,
+                                 kMapServer,
+                                 kAmcl,
+                                 kPlannerServer,
+                                 kControllerServer,
+                                 kBehaviorServer,
+                                 kVelocitySmoother,
+                                 kBtNavigator,
+                                 kTwistMux,
+                                 kEStop,
+                                 {"lifecycle_manager_localization", nullptr},
+                                 {"lifecycle_manager_navigation", nullptr},
+                                 kMission};
   return kAll;
+}
+
+bool is_server(std::string_view node) {
+  return std::ranges::find(kLocalization, node) != std::end(kLocalization) ||
+         std::ranges::find(kNavigation, node) != std::end(kNavigation);
 }
 
 }  // namespace culprit::rover

@@ -17,27 +17,21 @@
 
 namespace culprit::rover {
 
-std::unique_ptr<RoverNode> make_world(Settings settings);
-std::unique_ptr<RoverNode> make_mission(Settings settings);
-std::unique_ptr<RoverNode> make_lidar_driver(Settings settings);
-std::unique_ptr<RoverNode> make_camera_driver(Settings settings);
-std::unique_ptr<RoverNode> make_imu_driver(Settings settings);
-std::unique_ptr<RoverNode> make_base_driver(Settings settings);
-std::unique_ptr<RoverNode> make_map_server(Settings settings);
-std::unique_ptr<RoverNode> make_amcl(Settings settings);
-std::unique_ptr<RoverNode> make_planner_server(Settings settings);
-std::unique_ptr<RoverNode> make_controller_server(Settings settings);
-std::unique_ptr<RoverNode> make_behavior_server(Settings settings);
-std::unique_ptr<RoverNode> make_bt_navigator(Settings settings);
-std::unique_ptr<RoverNode> make_velocity_smoother(Settings settings);
-std::unique_ptr<RoverNode> make_twist_mux(Settings settings);
-std::unique_ptr<RoverNode> make_e_stop(Settings settings);
-
 struct Process {
   std::string_view name;
   std::unique_ptr<RoverNode> (*make)(Settings);  // null: a lifecycle manager
   bool is_robot = true;
 };
+
+template <class Node>
+std::unique_ptr<RoverNode> make(Settings settings) {
+  return std::make_unique<Node>(std::move(settings));
+}
+
+extern const Process kWorld, kMission;
+extern const Process kLidarDriver, kCameraDriver, kImuDriver, kBaseDriver, kMapServer, kAmcl;
+extern const Process kPlannerServer, kControllerServer, kBehaviorServer, kBtNavigator;
+extern const Process kVelocitySmoother, kTwistMux, kEStop;
 
 // In the order in which they are started.
 std::span<const Process> processes();
@@ -47,5 +41,12 @@ inline constexpr std::string_view kLocalization[] = {"/map_server", "/amcl"};
 inline constexpr std::string_view kNavigation[] = {"/controller_server", "/planner_server",
                                                    "/behavior_server", "/velocity_smoother",
                                                    "/bt_navigator"};
+// Whether one of these is of that full name.
+bool is_server(std::string_view node);
+
+// The process of a lifecycle manager as Nav2's (bond_manager.h): opens its node, and works for ever on a thread of its own, which
+// the process must not wait for. Its node has parameters and answers while the manager is blocked.
+Expected<void> run_lifecycle_manager(ros2::Context& context, const std::string& name,
+                                     std::span<const std::string_view> servers);
 
 }  // namespace culprit::rover

@@ -19,20 +19,24 @@ ParticleFilter::ParticleFilter(const GridMap& map, std::uint64_t seed)
   place({});
 }
 
-// Nearly normal, with standard deviation 1.
-double ParticleFilter::noise() {
-  double sum = -2;
-  for (int i = 0; i < 4; ++i) sum += static_cast<double>(random_() >> 11) * 0x1p-53;
-  return sum * std::numbers::sqrt3;
-}
-
 void ParticleFilter::place(const Pose2& near) {
   particles_.clear();
   for (std::size_t i = 0; i < kParticles; ++i) {
-    particles_.push_back(
-        {near.x + 0.1 * noise(), near.y + 0.1 * noise(), normalized(near.yaw + 0.1 * noise())});
+    particles_.push_back({near.x + 0.1 * noise(random_), near.y + 0.1 * noise(random_),
+                          normalized(near.yaw + 0.1 * noise(random_))});
   }
   estimate_ = {near, 0.01, 0.01, 1};
+}
+
+std::optional<double> ParticleFilter::off(const Pose2& pose, const Scan& scan, int beam) const {
+  const auto beams = static_cast<int>(scan.ranges.size());
+  const auto range = static_cast<double>(scan.ranges[static_cast<std::size_t>(beam)]);
+  if (!(range > kShortest && range < scan.longest)) return std::nullopt;
+  const double angle = pose.yaw - std::numbers::pi + 2 * std::numbers::pi * beam / beams;
+  const int column = GridMap::cell(pose.x + range * std::cos(angle));
+  const int row = GridMap::cell(pose.y + range * std::sin(angle));
+  const bool is_inside = column >= 0 && row >= 0 && column < map_.width() && row < map_.height();
+  return is_inside ? static_cast<double>(distances_[map_.index(column, row)]) : kFar;
 }
 
 // Its logarithm, a beam: the sum over the beams would be far too sure, for they are not independent.
@@ -40,16 +44,10 @@ double ParticleFilter::likelihood(const Pose2& pose, const Scan& scan, int every
   if (map_.is_wall_at(pose.x, pose.y)) return -100;
   double sum = 0;
   int count = 0;
-  const auto beams = static_cast<int>(scan.ranges.size());
-  for (int i = 0; i < beams; i += every) {
-    const auto range = static_cast<double>(scan.ranges[static_cast<std::size_t>(i)]);
-    if (!(range > kShortest && range < scan.longest)) continue;
-    const double angle = pose.yaw - std::numbers::pi + 2 * std::numbers::pi * i / beams;
-    const int column = GridMap::cell(pose.x + range * std::cos(angle));
-    const int row = GridMap::cell(pose.y + range * std::sin(angle));
-    const bool is_inside = column >= 0 && row >= 0 && column < map_.width() && row < map_.height();
-    const double off = is_inside ? static_cast<double>(distances_[map_.index(column, row)]) : kFar;
-    sum -= off * off / (2 * kHit * kHit);
+  for (int i = 0; i < static_cast<int>(scan.ranges.size()); i += every) {
+    const auto miss = off(pose, scan, i);
+    if (!miss) continue;
+    sum -= *miss * *miss / (2 * kHit * kHit);
     ++count;
   }
   return count == 0 ? 0 : sum / count;
@@ -87,9 +85,9 @@ void ParticleFilter::update(const Pose2& motion, const Scan& scan) {
   const double driven = std::hypot(motion.x, motion.y);
   weights_.clear();
   for (Pose2& particle : particles_) {
-    particle = particle * Pose2{motion.x + (0.01 + 0.1 * driven) * noise(),
-                                motion.y + (0.01 + 0.1 * driven) * noise(),
-                                motion.yaw + (0.01 + 0.1 * std::abs(motion.yaw)) * noise()};
+    particle = particle * Pose2{motion.x + (0.01 + 0.1 * driven) * noise(random_),
+                                motion.y + (0.01 + 0.1 * driven) * noise(random_),
+                                motion.yaw + (0.01 + 0.1 * std::abs(motion.yaw)) * noise(random_)};
     weights_.push_back(std::exp(10 * likelihood(particle, scan, 3)));
   }
   resample();
@@ -130,18 +128,10 @@ void ParticleFilter::summarize(const Scan& scan) {
   }
   int hits = 0;
   int fits = 0;
-  const auto beams = static_cast<int>(scan.ranges.size());
-  for (int i = 0; i < beams; ++i) {
-    const auto range = static_cast<double>(scan.ranges[static_cast<std::size_t>(i)]);
-    if (!(range > kShortest && range < scan.longest)) continue;
-    const Pose2 end = estimate_.pose *
-                      Pose2{0, 0, -std::numbers::pi + 2 * std::numbers::pi * i / beams} *
-                      Pose2{range, 0, 0};
-    const int column = GridMap::cell(end.x);
-    const int row = GridMap::cell(end.y);
-    const bool is_inside = column >= 0 && row >= 0 && column < map_.width() && row < map_.height();
-    ++hits;
-    fits += is_inside && static_cast<double>(distances_[map_.index(column, row)]) < kNear ? 1 : 0;
+  for (int i = 0; i < static_cast<int>(scan.ranges.size()); ++i) {
+    const auto miss = off(estimate_.pose, scan, i);
+    hits += miss ? 1 : 0;
+    fits += miss && *miss < kNear ? 1 : 0;
   }
   estimate_.match = hits == 0 ? 0 : static_cast<double>(fits) / hits;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <span>
 #include <vector>
@@ -35,7 +36,8 @@ class ParticleFilter {
   const Estimate& estimate() const { return estimate_; }
 
  private:
-  double noise();
+  // How far from a wall a beam ends; nothing: it hit nothing.
+  std::optional<double> off(const Pose2& pose, const Scan& scan, int beam) const;
   double likelihood(const Pose2& pose, const Scan& scan, int every) const;
   void resample();
   void summarize(const Scan& scan);

@@ -12,10 +12,7 @@ namespace {
 class PlannerServer final : public RoverNode {
  public:
   explicit PlannerServer(Settings settings)
-      : RoverNode({.name = "/planner_server",
-                   .is_managed = true,
-                   .cleared_by_activate = {"costmap_frozen"}},
-                  settings) {}
+      : RoverNode(settings, {.cleared_by_activate = {"costmap_frozen"}}) {}
 
  private:
   void set_up() override {
@@ -86,8 +83,6 @@ class PlannerServer final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_planner_server(Settings settings) {
-  return std::make_unique<PlannerServer>(std::move(settings));
-}
+const Process kPlannerServer = {"planner_server", make<PlannerServer>};
 
 }  // namespace culprit::rover

@@ -12,15 +12,15 @@ namespace culprit::rover {
 using ros2::Severity;
 using ros2::TransitionResult;
 
-RoverNode::RoverNode(Traits traits, Settings settings)
+RoverNode::RoverNode(Settings settings, Traits traits)
     : traits_(std::move(traits)), settings_(std::move(settings)) {}
 
 RoverNode::~RoverNode() = default;
 
 Expected<void> RoverNode::open(ros2::Context& context) {
-  auto name = ros2::parse_node_name(traits_.name);
+  auto name = ros2::parse_node_name(settings_.node);
   if (!name) return Error{name.error()};
-  if (traits_.is_managed) {
+  if (settings_.is_managed) {
     if (auto opened = open_managed(context, *name); !opened) return opened;
   } else {
     auto made = ros2::Node::create(context, *name);
@@ -30,7 +30,7 @@ Expected<void> RoverNode::open(ros2::Context& context) {
   if (auto declared = declare_parameters(); !declared) return declared;
   offer(diagnostics_, "/diagnostics");
   diagnoses_.emplace(executor(), 1s, [this] { diagnose(); });
-  if (!traits_.is_managed) set_up();
+  if (!settings_.is_managed) set_up();
   return trouble_.empty() ? Expected<void>() : Error{trouble_};
 }
 
@@ -56,7 +56,9 @@ Expected<void> RoverNode::declare_parameters() {
   ros2::ParameterStore& parameters = node().parameters();
   if (auto done = parameters.declare("fault", Value("")); !done) return done;
   for (const auto& [name, value] : traits_.parameters) {
-    if (auto done = parameters.declare(name, value); !done) return done;
+    const bool is_changed = name == settings_.changed.first;
+    const Value& at_start = is_changed ? Value(settings_.changed.second) : value;
+    if (auto done = parameters.declare(name, at_start); !done) return done;
   }
   parameters.on_set([this](std::span<const ros2::msg::Parameter> changes) -> Expected<void> {
     for (const ros2::msg::Parameter& change : changes) {

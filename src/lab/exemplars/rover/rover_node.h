@@ -25,20 +25,22 @@ namespace culprit::rover {
 using namespace std::chrono_literals;
 
 struct Settings {
+  std::string node{};  // its full name
+  bool is_managed = false;
   std::uint64_t seed = 1;
   std::filesystem::path state{};  // folder of what outlives a process; empty: nothing does
+  std::pair<std::string, double> changed{};  // a parameter with another default, for experiments
 };
 
 class RoverNode {
  public:
   struct Traits {
-    std::string name;  // full
-    bool is_managed = false;
     std::vector<std::pair<std::string, Value>> parameters{};
     std::vector<std::string> cleared_by_activate{};  // faults
   };
 
-  RoverNode(Traits traits, Settings settings);
+  explicit RoverNode(Settings settings) : RoverNode(std::move(settings), {}) {}
+  RoverNode(Settings settings, Traits traits);
   virtual ~RoverNode();
   // The context outlives the node.
   Expected<void> open(ros2::Context& context);

@@ -6,10 +6,12 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string>
+#include <thread>
 
 #include "exemplars/node_command_line.h"
-#include "exemplars/rover/lifecycle_manager.h"
 #include "exemplars/rover/nodes.h"
 
 namespace culprit::rover {
@@ -18,6 +20,24 @@ namespace {
 int fail(const std::string& why) {
   std::fprintf(stderr, "rover-node: %s\n", why.c_str());
   return 1;
+}
+
+// An experimenter's file for the next process of a name, "busy_s 8": `busy_s` seconds long its device is busy, it needs `start_s`
+// seconds to start, or a parameter of the node has another default.
+Expected<void> obey_experiment(std::string_view name, Settings& settings) {
+  const auto file = settings.state / ("next_" + std::string(name));
+  auto& [what, number] = settings.changed;
+  if (settings.state.empty() || !(std::ifstream(file) >> what >> number)) return {};
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(file, error);
+  const auto is_busy = [number = number, written] {
+    return std::filesystem::file_time_type::clock::now() - written <
+           std::chrono::duration<double>(number);
+  };
+  if (!error && what == "busy_s" && is_busy()) return Error{"the device is busy"};
+  std::filesystem::remove(file, error);
+  if (what == "start_s") std::this_thread::sleep_for(std::chrono::duration<double>(number));
+  return {};
 }
 
 int run(const Process& process, const Settings& settings) {
@@ -55,8 +75,11 @@ int main(int argc, char** argv) {
   const auto given = parse(line, argc, argv, exit_code);
   if (!given) return exit_code;
   const auto is_it = [&](const Process& each) { return each.name == given->name; };
-  return run(*std::ranges::find_if(processes(), is_it),
-             {.seed = given->seed, .state = given->option});
+  const std::string node = "/" + given->name;
+  Settings settings{
+      .node = node, .is_managed = is_server(node), .seed = given->seed, .state = given->option};
+  if (auto obeyed = obey_experiment(given->name, settings); !obeyed) return fail(obeyed.error());
+  return run(*std::ranges::find_if(processes(), is_it), settings);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
-// The rover's algorithms, without a node.
+// The rover's algorithms and its lifecycle manager, without a node.
 #include <gtest/gtest.h>
 
+#include "exemplars/rover/bond_manager.h"
 #include "exemplars/rover/particle_filter.h"
 #include "exemplars/rover/path_search.h"
 #include "exemplars/rover/pursuit.h"
@@ -101,6 +102,40 @@ TEST(RoverWorld, ARobotStopsAtAWallAndPeopleTurnBackBeforeIt) {
   other.kidnap({6, 3.7, 0});
   for (int i = 0; i < 400; ++i) other.step(0.05);
   EXPECT_GT(distance(other.people().front(), other.robot()), 0.5);
+}
+
+TEST(RoverBondManager, StartsAllUpAndPausesBackwardsAndResumesOnRequest) {
+  using Changes = std::vector<std::pair<std::size_t, Transition>>;
+  Changes changes;
+  BondManager manager({.count = 2,
+                       .reach = [](std::size_t) { return BondManager::Reach::kAnswers; },
+                       .pid = [](std::size_t) { return 1; },
+                       .change =
+                           [&](std::size_t server, Transition transition) {
+                             changes.emplace_back(server, transition);
+                             return true;
+                           },
+                       .answer_time = [] { return Duration::zero(); }},
+                      false);
+  Time now{};
+  const auto changed = [&] {
+    for (int i = 0; i < 20; ++i) manager.step(now = later(now, std::chrono::milliseconds(100)));
+    return std::exchange(changes, {});
+  };
+  using enum Transition;
+  manager.begin(now);
+  EXPECT_EQ(changed(), (Changes{{0, kConfigure}, {1, kConfigure}, {0, kActivate}, {1, kActivate}}));
+  std::vector<bool> answers;
+  const auto answer = [&](bool is_done) { answers.push_back(is_done); };
+  manager.ask(1, answer);
+  EXPECT_EQ(changed(), (Changes{{1, kDeactivate}, {0, kDeactivate}}));
+  EXPECT_TRUE(manager.is_stuck());
+  manager.ask(2, answer);
+  EXPECT_EQ(changed(), (Changes{{0, kActivate}, {1, kActivate}}));
+  EXPECT_FALSE(manager.is_stuck());
+  manager.ask(9, answer);
+  EXPECT_EQ(changed(), Changes{});
+  EXPECT_EQ(answers, (std::vector<bool>{true, true, false}));
 }
 
 }  // namespace

@@ -8,10 +8,11 @@ namespace culprit::rover {
 namespace {
 
 // velocity_smoother: limits the acceleration, 20 Hz, from /cmd_vel_nav to /cmd_vel_smoothed. Stops 1 s after the last command.
+//
+// Fault: "best_effort" (its publisher has another QoS, and so the reliable twist_mux hears nothing).
 class VelocitySmoother final : public RoverNode {
  public:
-  explicit VelocitySmoother(Settings settings)
-      : RoverNode({.name = "/velocity_smoother", .is_managed = true}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   void set_up() override {
@@ -31,9 +32,12 @@ class VelocitySmoother final : public RoverNode {
     };
     given_.linear.x = toward(given_.linear.x, wanted_.linear.x, 0.08);
     given_.angular.z = toward(given_.angular.z, wanted_.angular.z, 0.3);
-    out_->publish(given_);
+    if (has("best_effort") && !std::exchange(is_best_effort_, true))
+      offer(out_, "/cmd_vel_smoothed", ros2::qos::kSensorData);
+    if (out_) out_->publish(given_);
   }
 
+  bool is_best_effort_ = false;
   msg::Twist wanted_;
   msg::Twist given_;
   ros2::Executor::Clock::time_point heard_{};
@@ -44,7 +48,7 @@ class VelocitySmoother final : public RoverNode {
 // stop: a lock, as twist_mux calls it.
 class TwistMux final : public RoverNode {
  public:
-  explicit TwistMux(Settings settings) : RoverNode({.name = "/twist_mux"}, settings) {}
+  using RoverNode::RoverNode;
 
  private:
   using Clock = ros2::Executor::Clock;
@@ -75,8 +79,7 @@ class TwistMux final : public RoverNode {
 // e_stop: the safe stop. /e_stop says at 5 Hz whether the rover must stand: the parameter `stopped`.
 class EStop final : public RoverNode {
  public:
-  explicit EStop(Settings settings)
-      : RoverNode({.name = "/e_stop", .parameters = {{"stopped", false}}}, settings) {}
+  explicit EStop(Settings settings) : RoverNode(settings, {.parameters = {{"stopped", false}}}) {}
 
  private:
   void set_up() override {
@@ -95,14 +98,8 @@ class EStop final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_velocity_smoother(Settings settings) {
-  return std::make_unique<VelocitySmoother>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_twist_mux(Settings settings) {
-  return std::make_unique<TwistMux>(std::move(settings));
-}
-std::unique_ptr<RoverNode> make_e_stop(Settings settings) {
-  return std::make_unique<EStop>(std::move(settings));
-}
+const Process kVelocitySmoother = {"velocity_smoother", make<VelocitySmoother>};
+const Process kTwistMux = {"twist_mux", make<TwistMux>};
+const Process kEStop = {"e_stop", make<EStop>};
 
 }  // namespace culprit::rover

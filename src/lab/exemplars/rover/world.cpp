@@ -70,19 +70,13 @@ void World::walk(double dt) {
 }
 
 std::vector<float> World::scan() {
-  // A sum of uniform draws: std::normal_distribution differs between standard libraries.
-  const auto noise = [this] {
-    double sum = -2;
-    for (int i = 0; i < 4; ++i) sum += static_cast<double>(random_() >> 11) * 0x1p-53;
-    return sum * kNoise * std::numbers::sqrt3;
-  };
   std::vector<float> ranges;
   for (int i = 0; i < kBeams; ++i) {
     const double angle = -std::numbers::pi + 2 * std::numbers::pi * i / kBeams;
     const Pose2 beam{robot_.x, robot_.y, robot_.yaw + angle};
     double range = map_.ray(beam, kLidarRange);
     for (const Pose2& person : people_) range = ray_to_disc(beam, person, kPersonRadius, range);
-    ranges.push_back(static_cast<float>(std::max(0.0, range + noise())));
+    ranges.push_back(static_cast<float>(std::max(0.0, range + kNoise * noise(random_))));
   }
   return ranges;
 }

@@ -1,8 +1,8 @@
 // world: the rover's body and surroundings. The drivers see it through topics below /hardware, experiments through
 // /world/truth and its status.
 //
-// Faults of hardware, which no process can mend, are parameters: lidar_plugged, battery (set it to discharge), kidnap
-// ("x y yaw": somebody carries the robot there).
+// Faults of hardware, which no process can mend, are parameters: lidar_plugged, lidar_flaps (a loose plug: out for 3 s of 4 s),
+// battery (set it to discharge), kidnap ("x y yaw": somebody carries the robot there).
 #include <sstream>
 
 #include "exemplars/rover/nodes.h"
@@ -14,9 +14,10 @@ namespace {
 class WorldNode final : public RoverNode {
  public:
   explicit WorldNode(Settings settings)
-      : RoverNode({.name = "/world",
-                   .parameters = {{"lidar_plugged", true}, {"battery", 1.0}, {"kidnap", ""}}},
-                  settings),
+      : RoverNode(settings, {.parameters = {{"lidar_plugged", true},
+                                            {"lidar_flaps", false},
+                                            {"battery", 1.0},
+                                            {"kidnap", ""}}}),
         world_(settings.seed) {}
 
  private:
@@ -59,7 +60,9 @@ class WorldNode final : public RoverNode {
   }
 
   void publish_scan() {
-    if (!parameter<bool>("lidar_plugged")) return;
+    const bool is_out =
+        parameter<bool>("lidar_flaps") && (ros2::Executor::Clock::now() - flaps_since_) % 4s < 3s;
+    if (is_out || !parameter<bool>("lidar_plugged")) return;
     msg::LaserScan scan;
     scan.header = header_now("laser");
     scan.angle_min = -std::numbers::pi_v<float>;
@@ -95,6 +98,7 @@ class WorldNode final : public RoverNode {
   }
 
   Expected<void> on_set(const ros2::msg::Parameter& change) override {
+    if (change.name == "lidar_flaps") flaps_since_ = ros2::Executor::Clock::now();
     if (change.name == "battery") world_.set_battery(change.value.double_value);
     if (change.name != "kidnap" || change.value.string_value.empty()) return {};
     Pose2 to;
@@ -112,6 +116,7 @@ class WorldNode final : public RoverNode {
 
   static constexpr Duration kTick = 50ms;
   World world_;
+  ros2::Executor::Clock::time_point flaps_since_{};
   std::optional<ros2::Publisher<msg::LaserScan>> lidar_;
   std::optional<ros2::Publisher<msg::Imu>> imu_;
   std::optional<ros2::Publisher<msg::Odometry>> wheels_;
@@ -122,8 +127,6 @@ class WorldNode final : public RoverNode {
 
 }  // namespace
 
-std::unique_ptr<RoverNode> make_world(Settings settings) {
-  return std::make_unique<WorldNode>(std::move(settings));
-}
+const Process kWorld = {"world", make<WorldNode>, false};
 
 }  // namespace culprit::rover

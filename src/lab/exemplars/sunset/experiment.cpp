@@ -15,15 +15,6 @@ namespace {
 constexpr double kPollSec = 0.5;
 constexpr int kCrashes = 2;
 
-// Begins a call that ends in a callback; the future has what the callback gets.
-template <class T, class Begin>
-std::future<Expected<T>> ask(Begin begin) {
-  const auto promise = std::make_shared<std::promise<Expected<T>>>();
-  auto future = promise->get_future();
-  begin([promise](Expected<T> answer) { promise->set_value(std::move(answer)); });
-  return future;
-}
-
 struct Setting {
   Member member;
   std::string name;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <memory>
 #include <string>
 
@@ -19,6 +20,15 @@ namespace culprit::sunset {
 
 template <class T>
 using Then = std::function<void(Expected<T>)>;
+
+// Begins a call that ends in a callback; the future has what the callback gets.
+template <class T, class Begin>
+std::future<Expected<T>> ask(Begin begin) {
+  const auto promise = std::make_shared<std::promise<Expected<T>>>();
+  auto future = promise->get_future();
+  begin([promise](Expected<T> answer) { promise->set_value(std::move(answer)); });
+  return future;
+}
 
 class NodeControl {
  public:

@@ -33,14 +33,6 @@ std::string type_of(std::string_view topic) {
                                         : "sensor_msgs/msg/Image";
 }
 
-template <class T>
-Expected<T> ask(const std::function<void(Then<T>)>& begin) {
-  const auto promise = std::make_shared<std::promise<Expected<T>>>();
-  auto future = promise->get_future();
-  begin([promise](Expected<T> answer) { promise->set_value(std::move(answer)); });
-  return future.get();
-}
-
 std::string trouble(const Expected<void>& result) { return result ? "" : result.error(); }
 
 }  // namespace
@@ -183,14 +175,14 @@ std::optional<int> LiveRobot::wait_for_end(Member member) {
 
 std::string LiveRobot::set(Member member, const std::string& parameter, const Value& value) {
   return trouble(ask<void>([&](Then<void> then) {
-    watcher_->control(member).set_parameter(parameter, value, std::move(then));
-  }));
+                   watcher_->control(member).set_parameter(parameter, value, std::move(then));
+                 }).get());
 }
 
 std::string LiveRobot::change(Member member, ros2::TransitionId transition) {
   return trouble(ask<void>([&](Then<void> then) {
-    watcher_->control(member).change_state(transition, std::move(then));
-  }));
+                   watcher_->control(member).change_state(transition, std::move(then));
+                 }).get());
 }
 
 std::string LiveRobot::restart(Member member) {
@@ -207,8 +199,8 @@ std::optional<Value> LiveRobot::get(Member member, const std::string& parameter)
   const auto until = std::chrono::steady_clock::now() + kPatience;
   while (std::chrono::steady_clock::now() < until) {
     const auto value = ask<Value>([&](Then<Value> then) {
-      watcher_->control(member).get_parameter(parameter, std::move(then));
-    });
+                         watcher_->control(member).get_parameter(parameter, std::move(then));
+                       }).get();
     if (value) return *value;
     std::this_thread::sleep_for(20ms);
   }
@@ -218,8 +210,9 @@ std::optional<Value> LiveRobot::get(Member member, const std::string& parameter)
 bool LiveRobot::becomes(Member member, LifecycleState state) {
   const auto until = std::chrono::steady_clock::now() + kPatience;
   while (std::chrono::steady_clock::now() < until) {
-    const auto now = ask<LifecycleState>(
-        [&](Then<LifecycleState> then) { watcher_->control(member).get_state(std::move(then)); });
+    const auto now = ask<LifecycleState>([&](Then<LifecycleState> then) {
+                       watcher_->control(member).get_state(std::move(then));
+                     }).get();
     if (now && *now == state) return true;
     std::this_thread::sleep_for(20ms);
   }

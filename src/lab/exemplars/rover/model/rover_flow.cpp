@@ -71,19 +71,23 @@ void RoverModel::drive() {
     wanted_ = *wanted;
     smoothed_ = now_;
   }
+  const Part& smoother = part("velocity_smoother");
+  if (works(smoother)) publish("velocity_smoother", "/cmd_vel_smoothed");
   const Part& e_stop = part("e_stop");
   const bool may_drive =
       e_stop.parameter("stopped") && !std::get<bool>(*e_stop.parameter("stopped"));
   if (works(e_stop)) released_ = may_drive ? now_ : kLongAgo;
   Trip::Command command;
-  if (works("velocity_smoother") && works("twist_mux")) {
+  if (works(smoother) && smoother.fault != "best_effort" && works("twist_mux")) {
     if (is_new(smoothed_, 1s) && is_new(released_, 1s)) command = wanted_;
     publish("twist_mux", "/cmd_vel",
             {{"linear.x", Value(command.speed)}, {"angular.z", Value(command.turn)}});
   }
   const bool has_power = std::get<bool>(*base.parameter("motor_power"));
   const bool moves = works(base) && has_power && base.fault != "stall";
-  speed_ = moves ? command.speed : 0;
+  wheels_ = moves ? command.speed : 0;
+  speed_ = base.fault == "slip" ? 0 : wheels_;
+  place_ += speed_ * seconds(kTick);
   turn_ = moves ? command.turn : 0;
   const bool stands = std::abs(speed_) < 0.02 && std::abs(turn_) < 0.05;
   if (stands) stood_s_ += seconds(kTick);
@@ -100,7 +104,8 @@ void RoverModel::drive() {
 void RoverModel::sense() {
   const Part& lidar = part("lidar");
   const bool is_slow = lidar.fault == "slow";
-  if (works(lidar) && is_plugged_ && lidar.fault != "stall" &&
+  const bool is_out = flaps_since_ != kNever && (now_ - flaps_since_) % 4s < 3s;
+  if (works(lidar) && is_plugged_ && !is_out && lidar.fault != "stall" &&
       is_due(lidar, is_slow ? 500ms : 100ms)) {
     if (lidar.fault != "frozen") frozen_range_ = 0.5 + random_.uniform();
     const bool is_nan = lidar.fault == "nan";
@@ -114,7 +119,8 @@ void RoverModel::sense() {
              {"header.frame_id", Value(is_ours ? "laser" : "lazer")}});
   }
   const Part& camera = part("camera");
-  if (works(camera) && camera.fault != "stall" && is_due(camera, 250ms))
+  const bool is_long = works(camera) && std::get<double>(*camera.parameter("exposure")) > 1;
+  if (works(camera) && camera.fault != "stall" && is_due(camera, is_long ? 2s : 250ms))
     publish("camera", "/camera/image_raw");
   const Part& imu = part("imu");
   if (works(imu) && imu.fault != "stall")
@@ -126,7 +132,7 @@ void RoverModel::sense() {
   const bool is_late = base.fault == "tf_late";
   publish("base", "/odom",
           {{"twist.twist.angular.z", Value(is_frozen ? 0.0 : turn_)},
-           {"twist.twist.linear.x", Value(is_frozen ? 0.0 : speed_)},
+           {"twist.twist.linear.x", Value(is_frozen ? 0.0 : wheels_)},
            {"delay(header.stamp)", Value(is_late ? 3.0 : 0.01)}});
   if (base.fault != "tf_stopped") publish("base", "/tf");
   if (base.fault != "tf_stopped" && !is_late) odometry_ = now_;
@@ -152,7 +158,8 @@ void RoverModel::localize() {
   if (fits && !is_lost) pose_error_ = std::max(0.05, pose_error_ * 0.9);
   const bool is_frozen = lidar.fault == "frozen" && speed_ > 0.1;
   match_ = !fits || is_lost ? 0.35 : is_frozen ? 0.6 : 0.95;
-  publish("amcl", "/amcl_pose");
+  publish("amcl", "/amcl_pose",
+          {{"pose.pose.position.x", Value(place_)}, {"pose.pose.position.y", Value(0.0)}});
   if (amcl.fault == "tf_stopped") return;
   publish("amcl", "/tf");
   corrected_ = now_;
@@ -187,7 +194,9 @@ void RoverModel::diagnose() {
   if (works(amcl) && has_map_ && is_due(amcl, 1s)) tell_signals("amcl match", Value(match_));
   Part& camera = part("camera");
   if (!works(camera) || !is_due(camera, 1s)) return;
-  tell_signals("camera_driver brightness", Value(camera.fault == "dark" ? 0.0 : 60.0));
+  tell_signals("camera_driver brightness", Value(camera.fault == "dark"  ? 0.0
+                                                 : camera.fault == "dim" ? 8.0
+                                                                         : 60.0));
   if (camera.fault == "leak") camera.memory_mib += kLeak;
   tell(UsageSeen{ids_.at("camera"), 0.02, camera.memory_mib});
 }

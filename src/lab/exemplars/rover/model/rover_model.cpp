@@ -2,6 +2,9 @@
 #include "exemplars/rover/model/rover_model.h"
 
 #include <algorithm>
+#include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "exemplars/rover/nodes.h"
 
@@ -20,7 +23,6 @@ constexpr Duration kDiscovery = 300ms;  // until others know a new node
 constexpr Duration kFirstProbe =
     900ms;  // 400 ms between probes, 500 ms for the answer (link/link.cpp)
 constexpr Duration kProbePeriod = 400ms;
-constexpr double kStands = 6;  // seconds, as experiment.cpp
 
 // kill:camera, imu, twist_mux, e_stop heal live in 0.4 to 1.0 s, of which the start takes nearly all.
 constexpr double kStartLeast_s = 0.25;
@@ -29,51 +31,33 @@ constexpr double kStartMost_s = 0.75;
 constexpr double kServerLeast_s = 1.0;
 constexpr double kServerMost_s = 2.0;
 
-struct Ends {
-  const char* component;
-  std::vector<const char*> publishes;
-  std::vector<const char*> subscribes;
-  std::vector<const char*> serves;
-  std::vector<const char*> asks;
-};
-// As the nodes offer them in set_up(). All publish on /diagnostics and /bond, which the rules ignore.
-const std::vector<Ends>& ends() {
-  static const std::vector<Ends> kAll = {
-      {"lidar", {"/scan"}, {}, {}, {}},
-      {"camera", {"/camera/image_raw"}, {}, {}, {}},
-      {"imu", {"/imu"}, {}, {}, {}},
-      {"base", {"/odom", "/tf", "/battery_state"}, {"/cmd_vel"}, {}, {}},
-      {"map_server", {"/map"}, {}, {}, {}},
-      {"amcl",
-       {"/tf", "/amcl_pose"},
-       {"/tf", "/map", "/scan"},
-       {"/reinitialize_global_localization"},
-       {}},
-      {"planner_server",
-       {"/plan", "/global_costmap/costmap"},
-       {"/tf", "/map", "/scan"},
-       {"/compute_path_to_pose/_action/send_goal"},
-       {}},
-      {"controller_server",
-       {"/cmd_vel_nav", "/local_costmap/costmap"},
-       {"/tf", "/scan"},
-       {"/follow_path/_action/send_goal"},
-       {}},
-      {"behavior_server",
-       {"/cmd_vel_nav"},
-       {"/tf"},
-       {"/spin/_action/send_goal", "/backup/_action/send_goal"},
-       {}},
-      {"velocity_smoother", {"/cmd_vel_smoothed"}, {"/cmd_vel_nav"}, {}, {}},
-      {"bt_navigator",
-       {},
-       {"/tf"},
-       {"/navigate_to_pose/_action/send_goal"},
-       {"/compute_path_to_pose/_action/send_goal", "/follow_path/_action/send_goal",
-        "/spin/_action/send_goal", "/backup/_action/send_goal"}},
-      {"twist_mux", {"/cmd_vel"}, {"/cmd_vel_smoothed", "/e_stop"}, {}, {}},
-      {"e_stop", {"/e_stop"}, {}, {}, {}}};
-  return kAll;
+// As the nodes offer them in set_up(): > publishes, < subscribes to, = serves, ? asks (an action's send_goal). All publish on
+// /diagnostics and /bond, which the rules ignore.
+constexpr std::pair<const char*, const char*> kEndpoints[] = {
+    {"lidar", ">/scan"},
+    {"camera", ">/camera/image_raw"},
+    {"imu", ">/imu"},
+    {"base", ">/odom >/tf >/battery_state </cmd_vel"},
+    {"map_server", ">/map"},
+    {"amcl", ">/tf >/amcl_pose </tf </map </scan =/reinitialize_global_localization"},
+    {"planner_server",
+     ">/plan >/global_costmap/costmap </tf </map </scan "
+     "=/compute_path_to_pose/_action/send_goal"},
+    {"controller_server",
+     ">/cmd_vel_nav >/local_costmap/costmap </tf </scan =/follow_path/_action/send_goal"},
+    {"behavior_server", ">/cmd_vel_nav </tf =/spin/_action/send_goal =/backup/_action/send_goal"},
+    {"velocity_smoother", ">/cmd_vel_smoothed </cmd_vel_nav"},
+    {"bt_navigator",
+     "</tf =/navigate_to_pose/_action/send_goal ?/compute_path_to_pose/_action/send_goal "
+     "?/follow_path/_action/send_goal ?/spin/_action/send_goal ?/backup/_action/send_goal"},
+    {"twist_mux", ">/cmd_vel </cmd_vel_smoothed </e_stop"},
+    {"e_stop", ">/e_stop"}};
+
+EndpointKind kind_of(char sign) {
+  return sign == '>'   ? EndpointKind::kPublisher
+         : sign == '<' ? EndpointKind::kSubscriber
+         : sign == '=' ? EndpointKind::kServer
+                       : EndpointKind::kClient;
 }
 
 }  // namespace
@@ -93,16 +77,13 @@ RoverModel::RoverModel(const RuleSet& rules, Options options)
 }
 
 void RoverModel::make_parts() {
-  const auto is_in = [](std::span<const std::string_view> all, const std::string& node) {
-    return std::ranges::find(all, node) != all.end();
-  };
   parts_.resize(rules_.components.size());
   for (std::size_t c = 0; c < parts_.size(); ++c) {
     const Component& component = rules_.components[c];
     Part& part = parts_[c];
     ids_.emplace(component.name, ComponentId(c));
     part.name = component.node.substr(1);
-    part.is_server = is_in(kLocalization, component.node) || is_in(kNavigation, component.node);
+    part.is_server = is_server(component.node);
   }
   for (const Fault& fault : faults()) {
     const auto found = ids_.find(fault.cause);
@@ -112,6 +93,7 @@ void RoverModel::make_parts() {
   }
   defaults("controller_server", "max_speed", 0.5);
   defaults("base", "motor_power", true);
+  defaults("camera", "exposure", 1.0);
   defaults("e_stop", "stopped", false);
   for (std::size_t c = 0; c < parts_.size(); ++c) {
     Part& part = parts_[c];
@@ -182,8 +164,15 @@ void RoverModel::start(ComponentId id) {
   part.start(++last_pid_);
   part.fault.clear();
   tell(ProcessSeen{id, ProcessState::kRunning, part.pid, ""});
-  const double start_s = part.is_server ? random_.uniform(kServerLeast_s, kServerMost_s)
-                                        : random_.uniform(kStartLeast_s, kStartMost_s);
+  if (now_ < part.busy_until) {
+    return after(kEnds, [this, id, pid = part.pid] {
+      if (parts_[id.index].pid == pid) lose(id, "exit code 1", Cause::kFault, true);
+    });
+  }
+  double start_s = part.is_server ? random_.uniform(kServerLeast_s, kServerMost_s)
+                                  : random_.uniform(kStartLeast_s, kStartMost_s);
+  if (part.next == "start_s") start_s += std::get<double>(part.next_value);
+  if (part.next == "start_s") part.next.clear();
   after(from_seconds(start_s), [this, id, pid = part.pid] {
     const Part& started = parts_[id.index];
     if (started.pid == pid && !started.is_gone()) appear(id);
@@ -199,6 +188,7 @@ void RoverModel::appear(ComponentId id) {
   part.memory_mib = 30;
   part.state = part.is_server ? Lifecycle::kUnconfigured : Lifecycle::kUnknown;
   part.parameters = part.at_start;
+  part.set_parameter(std::exchange(part.next, ""), part.next_value);
   tell(NodeAppeared{rules_[id].node, part.pid});
   for (const std::string& other : rules_[id].other_nodes) tell(NodeAppeared{other, part.pid});
   tell(Probed{id, true});
@@ -219,18 +209,14 @@ void RoverModel::appear(ComponentId id) {
 }
 
 void RoverModel::tell_endpoints(ComponentId id, bool is_there) {
-  const auto found = std::ranges::find(ends(), rules_[id].name, &Ends::component);
-  if (found == ends().end()) return;
-  const auto tell_all = [&](EndpointKind kind, const std::vector<const char*>& names) {
-    for (const char* name : names) {
-      if (is_there) tell(EndpointAppeared{rules_[id].node, kind, name});
-      if (!is_there) tell(EndpointVanished{rules_[id].node, kind, name});
-    }
-  };
-  tell_all(EndpointKind::kPublisher, found->publishes);
-  tell_all(EndpointKind::kSubscriber, found->subscribes);
-  tell_all(EndpointKind::kServer, found->serves);
-  tell_all(EndpointKind::kClient, found->asks);
+  const auto found = std::ranges::find(
+      kEndpoints, rules_[id].name, [](const auto& each) { return std::string_view(each.first); });
+  std::istringstream words(found == std::end(kEndpoints) ? "" : found->second);
+  for (std::string word; words >> word;) {
+    const EndpointKind kind = kind_of(word.front());
+    if (is_there) tell(EndpointAppeared{rules_[id].node, kind, word.substr(1)});
+    if (!is_there) tell(EndpointVanished{rules_[id].node, kind, word.substr(1)});
+  }
 }
 
 void RoverModel::lose(ComponentId id, const std::string& remark, Cause cause, bool says_goodbye) {
@@ -273,11 +259,19 @@ void RoverModel::probe(ComponentId id, int pid) {
 void RoverModel::inject(const Fault& fault) {
   if (fault.name == "kidnapped") pose_error_ = 4;
   if (fault.parameter == "lidar_plugged") is_plugged_ = false;
+  if (fault.parameter == "lidar_flaps") flaps_since_ = now_;
   if (fault.parameter == "battery") charge_ = std::get<double>(fault.value);
   if (fault.process == "world") return;
   const ComponentId id = ids_.at(fault.cause);
   Part& part = parts_[id.index];
   if (fault.way == Way::kKill) return lose(id, "killed by signal 9", Cause::kFault, false);
+  if (fault.way == Way::kNextStart) {
+    part.next = fault.parameter;
+    part.next_value = fault.value;
+    if (part.next == "busy_s")
+      part.busy_until = later(now_, from_seconds(std::get<double>(fault.value)));
+    return lose(id, "killed by signal 9", Cause::kFault, false);
+  }
   if (fault.way == Way::kDeactivate) return void(change(id, Transition::kDeactivate));
   if (fault.way == Way::kStop && part.is_running()) {
     part.process = ProcessState::kStopped;
@@ -295,27 +289,24 @@ void RoverModel::inject(const Fault& fault) {
 bool RoverModel::is_over(const Fault& fault) const {
   if (fault.name == "kidnapped") return pose_error_ < kLostAt;
   if (fault.parameter == "lidar_plugged") return is_plugged_;
+  if (fault.parameter == "lidar_flaps") return flaps_since_ == kNever;
   if (fault.parameter == "battery") return charge_ > std::get<double>(fault.value);
   const Part& part = parts_[ids_.at(fault.cause).index];
   if (fault.way == Way::kDeactivate) return works(part);
   if (!part.is_running() || !part.is_in_graph) return false;
   if (fault.parameter == "fault") return part.fault != std::get<std::string>(fault.value);
-  return fault.parameter.empty() || *part.parameter(fault.parameter) != fault.value;
+  const Value* value = part.parameter(fault.parameter);
+  return value == nullptr || *value != fault.value;
 }
 
-RoverModel::Measurements RoverModel::measure() const {
-  Measurements result{.goals_reached = trip_.reached(),
-                      .goals_failed = trip_.failed(),
-                      .stood_s = stood_s_,
-                      .standing_s = seconds(now_ - moved_)};
-  for (const Part& part : parts_) {
-    if (part.is_server && !works(part) && result.complaint.empty())
-      result.complaint = part.name + " is not active";
-  }
-  if (result.complaint.empty() && pose_error_ > kLostAt)
-    result.complaint = "the rover does not know where it is";
-  if (result.complaint.empty() && result.standing_s > kStands)
-    result.complaint = "the rover stands";
+Measurements RoverModel::measure() const {
+  Measurements result{.goals_reached = trip_.reached(), .goals_failed = trip_.failed()};
+  result.stood_s = stood_s_;
+  result.standing_s = seconds(now_ - moved_);
+  result.pose_error_m = pose_error_;
+  const auto broken = std::ranges::find_if(
+      parts_, [this](const Part& part) { return part.is_server && !works(part); });
+  result.complain(broken == parts_.end() ? "" : broken->name);
   return result;
 }
 
@@ -392,7 +383,7 @@ void RoverModel::serve(const Command& command) {
 void RoverModel::call(const Command& command, const CallService& call) {
   const auto manager = managers_.find(command.component);
   if (manager != managers_.end()) {
-    return manager->second->ask_startup([this, number = command.id](bool is_done) {
+    return manager->second->ask(0, [this, number = command.id](bool is_done) {
       reply(number, is_done ? Outcome::kDone : Outcome::kRefused);
     });
   }

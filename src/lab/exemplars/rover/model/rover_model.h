@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "exemplars/rover/bond_manager.h"
 #include "exemplars/rover/faults.h"
-#include "exemplars/rover/model/bond_manager.h"
 #include "exemplars/rover/model/trip.h"
 #include "language/rule_set.h"
 #include "robot/robot.h"
@@ -49,13 +49,6 @@ class RoverModel : public Robot {
   // Whether the fault itself is over, whatever became of its effects: as Experiment::is_over.
   bool is_over(const Fault& fault) const;
 
-  struct Measurements {
-    int goals_reached = 0;
-    int goals_failed = 0;
-    double stood_s = 0;       // since the beginning
-    double standing_s = 0;    // until now
-    std::string complaint{};  // as Measurements::complaint of the live rover; empty: it is well
-  };
   Measurements measure() const;
 
   // Called before a manager ends or deactivates a component that works and has no fault.
@@ -63,13 +56,15 @@ class RoverModel : public Robot {
 
  private:
   static constexpr Duration kTick = std::chrono::milliseconds(50);
-  static constexpr double kLostAt =
-      0.8;  // metres, as experiment.cpp; from there on the scan does not fit the map
+  static constexpr double kLostAt = Measurements::kLostAt;  // the scan does not fit the map
 
   struct Part : simulation::Body {
     std::string name{};                               // of its node, without the slash
     std::map<std::string, Value> at_start{};          // parameters of a new process
     std::string fault{};                              // that it shows
+    std::string next{};                               // Way::kNextStart: a parameter
+    Value next_value{};                               // of it
+    Time busy_until = kLongAgo;                       // its device
     std::vector<std::string> healed_by_activation{};  // faults
     bool is_server = false;
     Duration phase{};  // of its timers
@@ -145,9 +140,12 @@ class RoverModel : public Robot {
 
   // The world.
   double speed_ = 0;
+  double wheels_ = 0;  // its speed as the wheels measure it
   double turn_ = 0;
+  double place_ = 0;  // where it is on its way
   double charge_ = 1;
-  bool is_plugged_ = true;  // the lidar
+  bool is_plugged_ = true;     // the lidar
+  Time flaps_since_ = kNever;  // its plug is loose
   double stood_s_ = 0;
   Time moved_{};
 

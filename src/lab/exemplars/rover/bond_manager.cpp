@@ -1,8 +1,8 @@
-#include "exemplars/rover/model/bond_manager.h"
+#include "exemplars/rover/bond_manager.h"
 
 #include <algorithm>
 
-namespace culprit::rover::model {
+namespace culprit::rover {
 namespace {
 
 using namespace std::chrono_literals;
@@ -47,18 +47,24 @@ bool BondManager::is_blocked() {
   return !answers;
 }
 
-void BondManager::start_up() {
-  phase_ = Phase::kStarting;
-  for (const Transition each : {Transition::kConfigure, Transition::kActivate}) {
-    for (std::size_t s = 0; s < servers_.count; ++s) changes_.push_back({s, each});
+void BondManager::change_all(Phase phase, std::initializer_list<Transition> transitions) {
+  phase_ = phase;
+  for (const Transition each : transitions) {
+    for (std::size_t s = 0; s < servers_.count; ++s)
+      changes_.push_back({phase == Phase::kStarting ? s : servers_.count - 1 - s, each});
   }
 }
 
-void BondManager::reset() {
-  phase_ = Phase::kResetting;
-  for (const Transition each : {Transition::kDeactivate, Transition::kCleanup}) {
-    for (std::size_t s = servers_.count; s-- > 0;) changes_.push_back({s, each});
-  }
+void BondManager::serve_request() {
+  const std::uint8_t command = requests_.front().first;
+  answer_ = std::move(requests_.front().second);
+  requests_.pop_front();
+  if (command == 0) return start_up();
+  if (command == 1) return change_all(Phase::kStopping, {Transition::kDeactivate});
+  if (command == 2) return change_all(Phase::kStarting, {Transition::kActivate});
+  if (command == 3)
+    return change_all(Phase::kStopping, {Transition::kDeactivate, Transition::kCleanup});
+  std::exchange(answer_, nullptr)(false);
 }
 
 void BondManager::step(Time now) {
@@ -69,13 +75,10 @@ void BondManager::step(Time now) {
   if (phase_ == Phase::kRespawning && are_all_there()) return start_up();
   if (phase_ == Phase::kRespawning && now > until_) phase_ = Phase::kIdle;
   const bool listens = phase_ == Phase::kActive || phase_ == Phase::kIdle;
-  if (listens && !requests_.empty()) {
-    answer_ = std::move(requests_.front());
-    requests_.pop_front();
-    return start_up();
-  }
+  if (listens && !requests_.empty()) return serve_request();
   const auto is_broken = [now](Time heard) { return later(heard, kBondTimeout) < now; };
-  if (phase_ == Phase::kActive && has_bonds_ && std::ranges::any_of(heard_, is_broken)) reset();
+  if (phase_ == Phase::kActive && has_bonds_ && std::ranges::any_of(heard_, is_broken))
+    change_all(Phase::kResetting, {Transition::kDeactivate, Transition::kCleanup});
 }
 
 // The first change is answered now, if the server is there to answer.
@@ -87,8 +90,8 @@ void BondManager::advance(Time now) {
       blocked_on_ = servers_.pid(change.server);
       return;
     case Reach::kNobody:
-      // A start-up waits for the server; a reset ends.
-      if (phase_ == Phase::kResetting) finish(false, now);
+      // A start-up waits for the server; all else ends.
+      if (phase_ != Phase::kStarting) finish(false, now);
       return;
     case Reach::kAnswers:
       break;
@@ -106,9 +109,9 @@ void BondManager::finish(bool is_done, Time now) {
     until_ = later(now, kRespawn);
     return;
   }
-  phase_ = is_done ? Phase::kActive : Phase::kIdle;
-  if (is_done) std::ranges::fill(heard_, now);
+  phase_ = is_done && phase_ == Phase::kStarting ? Phase::kActive : Phase::kIdle;
+  std::ranges::fill(heard_, now);
   if (answer_) std::exchange(answer_, nullptr)(is_done);
 }
 
-}  // namespace culprit::rover::model
+}  // namespace culprit::rover
