@@ -47,7 +47,7 @@ Analyzer::Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time d
       blind_(knowledge, {writes.blindness, writes.events}, start, discovered),
       detector_(knowledge, writes.states),
       left_off_(knowledge, writes.states),
-      couplings_(knowledge, {writes.states, writes.couplings}),
+      couplings_(knowledge, {writes.states, writes.couplings, writes.latencies}),
       lateness_(knowledge, writes.latencies),
       outcomes_(knowledge, {writes.beliefs, writes.outcomes, writes.events}),
       fights_(knowledge, writes.states),

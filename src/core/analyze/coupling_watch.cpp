@@ -13,8 +13,10 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
   // Some show it before the failure that was repaired does.
   for (const Clearing& clearing : clearings_) {
     if (is_proven && clearing.gone > attempt.first_change && clearing.rule != cause &&
-        is_only_cause(strategy, clearing.rule, attempt.first_change))
+        is_only_cause(strategy, clearing.rule, attempt.first_change)) {
       write_.couplings.cleared(cause, clearing.rule);
+      note_fired(cause, fired_after(clearing.began, cause));
+    }
   }
   settle(knowledge_.rules[strategy].components, cause, attempt.effective, {}, now);
   for (const RuleId effect : knowledge_.states.active()) {
@@ -24,9 +26,20 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
     const Time shown = later(now, delay(cause, effect));
     const Time due =
         later(shown, std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle));
+    const Time began = diagnose::onset_of(effect, knowledge_).latest;
     questions_.push_back({strategy, effect, attempt.first_change, state.failing_since, shown, due,
-                          later(now, kPatience)});
+                          later(now, kPatience), fired_after(began, cause)});
   }
+}
+
+void CouplingWatch::note_fired(RuleId cause, Duration after) {
+  if (after <= kLongestDelay) write_.latencies.fired(cause, after);
+}
+
+// How much later than its readings allow the cause was detected, if an effect of it `began` then.
+Duration CouplingWatch::fired_after(Time began, RuleId cause) const {
+  return knowledge_.states[cause].first_detected() - began -
+         diagnose::reading_of(cause, knowledge_) - held(cause);
 }
 
 // With HOLD, the evaluations that a rule looks at.
@@ -115,12 +128,15 @@ Time CouplingWatch::gone_since(RuleId rule, Time now) const {
 void CouplingWatch::cleared(RuleId rule, Time now) {
   forget_what_is_settled(now);
   const Time gone = gone_since(rule, now);
-  clearings_.push_back({rule, gone, now});
+  clearings_.push_back({rule, gone, now, diagnose::onset_of(rule, knowledge_).latest});
   settle(knowledge_.rules[rule].components, rule, last_change_for(rule, now), kUsualDelay, now);
   std::erase_if(questions_, [&](const Question& q) {
     if (q.effect != rule) return false;
-    if (gone > q.since && is_only_cause(q.strategy, rule, q.since))
-      write_.couplings.cleared(knowledge_.rules[q.strategy].rule, rule);
+    if (gone > q.since && is_only_cause(q.strategy, rule, q.since)) {
+      const RuleId cause = knowledge_.rules[q.strategy].rule;
+      write_.couplings.cleared(cause, rule);
+      note_fired(cause, q.fired);
+    }
     return true;
   });
 }

@@ -43,6 +43,7 @@ class CouplingWatch {
   struct Writes {
     RuleStates& states;  // what is expected to settle
     Couplings& couplings;
+    Latencies& latencies;  // how long after its effects a cause was detected
   };
 
   // `knowledge` must outlive the watch.
@@ -78,6 +79,7 @@ class CouplingWatch {
     Time shown;           // from then on a fresh reading answers it
     Time due;             // or at the latest this
     Time abandoned;
+    Duration fired;  // how late j was detected, if i is its effect
   };
   struct Change {
     StrategyId strategy;
@@ -87,8 +89,9 @@ class CouplingWatch {
   };
   struct Clearing {
     RuleId rule;
-    Time gone;  // its trigger became false
-    Time at;    // it cleared
+    Time gone;   // its trigger became false
+    Time at;     // it cleared
+    Time began;  // at the latest
   };
 
   void settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
@@ -98,6 +101,8 @@ class CouplingWatch {
   Time last_change_for(RuleId cleared, Time now) const;
   Time gone_since(RuleId rule, Time now) const;
   Duration delay(RuleId cause, RuleId effect) const;
+  Duration fired_after(Time began, RuleId cause) const;
+  void note_fired(RuleId cause, Duration after);
   Time shown(const Change& change, RuleId rule) const;
   Time shown_after_all(const Change& change, RuleId rule) const;
   bool has_supply_back(RuleId rule) const;

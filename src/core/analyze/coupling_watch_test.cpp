@@ -38,7 +38,7 @@ struct Two {
     Attempt attempt;
     attempt.strategy = rules[kCause].strategies.front();
     attempt.first_change = attempt.effective = kCame + 20s;
-    CouplingWatch(knowledge, {knowledge.states, knowledge.couplings})
+    CouplingWatch(knowledge, {knowledge.states, knowledge.couplings, knowledge.latencies})
         .resolved(attempt, true, kResolved);
     const auto& settling = knowledge.states[kEffect].settling;
     return settling ? settling->since - kResolved : -1s;
@@ -50,7 +50,7 @@ struct Two {
     Attempt attempt;
     attempt.strategy = rules[kCause].strategies.front();
     attempt.first_change = attempt.effective = kCame + 1s;
-    CouplingWatch watch(knowledge, {knowledge.states, knowledge.couplings});
+    CouplingWatch watch(knowledge, {knowledge.states, knowledge.couplings, knowledge.latencies});
     watch.ended(attempt, kCame + 3s);
     watch.cleared(kCause, kCame + 4s);
     const auto& settling = knowledge.states[kEffect].settling;
@@ -98,7 +98,8 @@ TEST(CouplingWatch, TakesWhatCameSoonAfterItsCauseForOnItsWayWhateverHasChangedS
 TEST(CouplingWatch, TakesAnAttemptForAnEchoWhileTheEffectMayStillGoWithItsCause) {
   Two two("", 2s);
   two.read_seldom();
-  CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+  CouplingWatch watch(two.knowledge,
+                      {two.knowledge.states, two.knowledge.couplings, two.knowledge.latencies});
   watch.ended(two.attempt(kCause, Two::kCame + 1s), Two::kCame + 3s);
   EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 5900ms)));
   EXPECT_FALSE(watch.is_echo(two.attempt(kEffect, Two::kCame + 6s)));
@@ -109,7 +110,8 @@ TEST(CouplingWatch, TakesNothingForAnEchoThatWasSeenOnlyAfterTheChange) {
   for (const Duration came : {4900ms, 5000ms}) {
     Two two("", came);
     two.read_seldom();
-    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+    CouplingWatch watch(two.knowledge,
+                        {two.knowledge.states, two.knowledge.couplings, two.knowledge.latencies});
     watch.ended(two.attempt(kCause, Two::kCame - 1s), Two::kCame + 5s);
     EXPECT_EQ(watch.is_echo(two.attempt(kEffect, Two::kCame + 6s)), came < 5s);
   }
@@ -119,7 +121,8 @@ TEST(CouplingWatch, TakesNothingForAnEchoThatWasSeenOnlyAfterTheChange) {
 TEST(CouplingWatch, WaitsLongerForAnEffectThatWasItselfRestartedMeanwhile) {
   Two two("", 2s);
   two.read_seldom();
-  CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+  CouplingWatch watch(two.knowledge,
+                      {two.knowledge.states, two.knowledge.couplings, two.knowledge.latencies});
   watch.ended(two.attempt(kCause, Two::kCame + 1s), Two::kCame + 3s);
   watch.ended(two.attempt(kEffect, Two::kCame + 5s), Two::kCame + 7s);
   EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 8900ms)));
@@ -133,7 +136,8 @@ TEST(CouplingWatch, TakesWhatCameToLightWithTheRepairForNoLateEffect) {
   for (const char* level : {"WARNING", "ERROR"}) {
     Two two("", 4s, level);
     two.read_seldom();
-    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+    CouplingWatch watch(two.knowledge,
+                        {two.knowledge.states, two.knowledge.couplings, two.knowledge.latencies});
     watch.ended(two.attempt(kCause, Two::kCame + 2s), Two::kCame + 5s);
     const bool is_lesser = std::string(level) == "WARNING";
     EXPECT_EQ(watch.is_echo(two.attempt(kEffect, Two::kCame + 8500ms)), !is_lesser);
@@ -147,7 +151,8 @@ TEST(CouplingWatch, TakesWhatCameToLightWithTheRepairForNoLateEffect) {
 TEST(CouplingWatch, DoesNotCoupleWhatWasGoneBeforeTheChange) {
   for (const bool was_gone : {true, false}) {
     Two two("", 1s);
-    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+    CouplingWatch watch(two.knowledge,
+                        {two.knowledge.states, two.knowledge.couplings, two.knowledge.latencies});
     const Attempt attempt = two.attempt(kEffect, Two::kCame + 5s);
     Detection& detection = two.knowledge.states.state(kCause).detection;
     detection.trigger = Slot::of(false);
@@ -172,7 +177,8 @@ TEST(CouplingWatch, CountsWhatStaysAwayWhileItsCauseIsThere) {
     two.knowledge.states.state(kEffect).detection.trigger = Slot::of(false);
     for (const InputId id : two.rules[kEffect].inputs)
       two.knowledge.signals.set_read_at(id, Two::kCame + (is_seen ? 29s : 1s));
-    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+    CouplingWatch watch(two.knowledge,
+                        {two.knowledge.states, two.knowledge.couplings, two.knowledge.latencies});
     watch.exposed_others(kCause, Two::kCame + 30s);
     EXPECT_EQ(two.knowledge.couplings.of(kCause, kEffect).spared, is_seen ? 6 : 0);
   }
@@ -188,7 +194,8 @@ TEST(CouplingWatch, TakesAnEndOfTroubleUpstreamForAnAid) {
     effect.detection.trigger_since = Two::kCame + 4s;
     const Time since = Two::kCame + (began_before ? -1s : 1s);
     two.knowledge.components[ComponentId(0u)].past_trouble = PastTrouble{since, Two::kCame + 4s};
-    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+    CouplingWatch watch(two.knowledge,
+                        {two.knowledge.states, two.knowledge.couplings, two.knowledge.latencies});
     EXPECT_EQ(watch.is_unaided(kEffect), !began_before);
   }
 }
@@ -197,7 +204,8 @@ TEST(CouplingWatch, TakesAnEndOfTroubleUpstreamForAnAid) {
 TEST(CouplingWatch, GivesWhatCameToLightWithTheRepairTheUsualTimeToGo) {
   Two two("", 4s, "WARNING");
   two.read_seldom(2s);
-  CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+  CouplingWatch watch(two.knowledge,
+                      {two.knowledge.states, two.knowledge.couplings, two.knowledge.latencies});
   watch.ended(two.attempt(kCause, Two::kCame + 2s), Two::kCame + 5s);
   EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 6900ms)));
   EXPECT_FALSE(watch.is_echo(two.attempt(kEffect, Two::kCame + 7100ms)));

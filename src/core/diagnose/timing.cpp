@@ -160,12 +160,6 @@ Time first_onset_of(RuleId failure, const Knowledge& knowledge) {
   return std::min(onset_of(failure, knowledge).latest, knowledge.states[failure].first_onset);
 }
 
-Duration presumed_lateness(RuleId failure, const Knowledge& knowledge) {
-  const Latencies::Range lateness = knowledge.latencies.lateness(failure);
-  return symptom_of(failure, knowledge) == Symptom::kValue ? lateness.presumed - lateness.least
-                                                           : Duration::zero();
-}
-
 bool may_fire(RuleId rule, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[rule];
   const bool has_acted = knowledge.rules[rule].policies.on_change && !state.detection.armed;
@@ -183,6 +177,8 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
       const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
       if (rhythm.last && *rhythm.last <= onset)
         longest = std::max<Duration>(longest, kSilentGaps * rhythm.gap);
+      if (input.kind == Input::Kind::kRate && rhythm.is_slow_since(onset))
+        longest = std::max<Duration>(longest, later(rhythm.slowing->since, input.window) - onset);
     } else if (!watches_a_component(input)) {
       reads_value = knowledge.latencies.is_late(quiet);
     }

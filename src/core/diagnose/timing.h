@@ -7,7 +7,8 @@
 //
 //   trigger reads            e_r                              l_r                    E_r
 //   age, phi, rate, silent   last sample                      silent since + gap     2 gaps
-//   rate, not silent         detection - window               detection              2 gaps
+//   rate, not silent         detection - window               detection              2 gaps; or until the topic
+//                                                                                    is slow for the window
 //   alive                    when that changed                the same               none: asked
 //   alive, it hangs          last answer                      first one missed       none: asked
 //   lifecycle                when the state was read          the same               none: asked
@@ -70,14 +71,12 @@ Onset onset_now(RuleId rule, Time now, const Knowledge& knowledge);
 // detections, if it comes and goes.
 Onset onset_of(RuleId failure, const Knowledge& knowledge);
 Time first_onset_of(RuleId failure, const Knowledge& knowledge);
-// How much earlier than the latest possible onset the failure presumably began.
-Duration presumed_lateness(RuleId failure, const Knowledge& knowledge);
 
 // Can the rule fire: it is quiet, its COOLDOWN is over, and with ON_CHANGE its trigger was not true since it
 // acted?
 bool may_fire(RuleId rule, const Knowledge& knowledge);
-// E of a quiet rule; zero if it gives no evidence any more: its topics have sent since `onset`, its
-// trigger is unknown, it cannot fire, or its nodes must be asked.
+// E of a quiet rule; zero if it gives no evidence any more: its topics have sent since `onset` as they
+// usually do, its trigger is unknown, it cannot fire, or its nodes must be asked.
 Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge);
 
 // How long the failure may still be shown after its cause has cleared: the readings, the lateness

@@ -20,12 +20,19 @@ bool is_any(const std::vector<ComponentId>& components, const std::vector<bool>&
                      [&](ComponentId c) { return is_marked[c.index]; });
 }
 
-// Does it do more than reconfigure something, for a rule that is less critical than `rule`?
+bool calls(const Strategy& strategy) {
+  return std::ranges::any_of(strategy.adaptations, [](const Adaptation& adaptation) {
+    return adaptation.type == AdaptationType::kCall;
+  });
+}
+
+// Does it do more than reconfigure something, for a rule that is less critical than `rule`? A call may mend
+// what is wrong.
 bool weighs_on(const Knowledge& knowledge, StrategyId strategy, RuleId rule) {
   const Strategy& other = knowledge.rules[strategy];
   const bool is_lesser =
       knowledge.rules[other.rule].policies.criticality < knowledge.rules[rule].policies.criticality;
-  return begins_anew(other) || !is_lesser;
+  return begins_anew(other) || calls(other) || !is_lesser;
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ Latencies::Range Latencies::lateness(RuleId rule) const {
   const Learned& learned = learned_[rule.index];
   if (learned.count > 0) {
     const Duration least = std::max<Duration>(Duration::zero(), learned.range.least - cycle_);
-    return {least, learned.range.most, least};
+    return {least, std::max(learned.range.most, stated.most), least};
   }
   if (!is_late_[rule.index]) return {};
   if (statement_ == Statement::kExceeded)
@@ -167,6 +167,13 @@ void Latencies::cleared(RuleId rule, Duration after) {
   const Duration least = is_first ? after : std::min(learned.range.least, after);
   const Duration most = is_first ? after : std::max(learned.range.most, after);
   set(rule, {std::min(learned.count, Learned::kMost - 1) + 1, {least, most, least}});
+}
+
+void Latencies::fired(RuleId rule, Duration after) {
+  Learned learned = learned_[rule.index];
+  if (learned.count == 0 || after <= learned.range.most) return;
+  learned.range.most = std::min(after, kMostPatience);
+  set(rule, learned);
 }
 
 void Latencies::set(RuleId rule, const Learned& learned) {

@@ -4,7 +4,9 @@
 //   stated    before anything was observed: at most the least impact of the rule's strategies,
 //             because the rule's author expects to see the effect of that strategy within it.
 //             Presumably one cycle less (the author rounds up), and possibly not at all
-//   learned   from how long after a proven repair the rule cleared: the shortest and the longest time.
+//   learned   from how long after a proven repair the rule cleared: the shortest and the longest time; and
+//             from how long after its effects it fired, if its repair cleared them, too. A rule that clears
+//             soon may fire late, so evidence allows for what is stated, too.
 //             How much longer that was than stated, at most, counts for the rules of which nothing was
 //             learned yet: the same author underestimated them
 //
@@ -79,6 +81,9 @@ class Latencies {
   // A proven repair took effect, and the rule's trigger was false so long `after` that. Ignored for
   // rules that have no lateness.
   void cleared(RuleId rule, Duration after);
+  // A failure that cleared with the rule's repair had begun so long before the rule fired, readings left out.
+  // Ignored unless the lateness is learned.
+  void fired(RuleId rule, Duration after);
   const Learned& learned(RuleId rule) const { return learned_[rule.index]; }
   // For what was learned in an earlier run. Ignored for the same rules: the trigger may have changed.
   void set(RuleId rule, const Learned& learned);

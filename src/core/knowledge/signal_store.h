@@ -108,6 +108,18 @@ class SignalStore {
       Duration gap{};  // that was usual before
     };
     std::optional<Silence> silence{};
+    // The last messages, each of which came later after the one before than kSlowPace of the gaps that were usual
+    // before them. The topic becomes slow if they end with `last`.
+    struct Slowing {
+      Time since{};    // the last message that came in time
+      Time over{};     // the last one of them
+      Duration gap{};  // that was usual before
+    };
+    std::optional<Slowing> slowing{};
+    bool is_slow_since(Time at) const {
+      return slowing && slowing->over == last && slowing->since <= later(at, slowing->gap);
+    }
+    static constexpr double kSlowPace = 1.5;
 
     // Does it come all the time? A topic that is sent on demand pauses often or for long.
     bool is_steady() const { return gap > Duration::zero() && paused <= flowed / kFlowsForPause; }

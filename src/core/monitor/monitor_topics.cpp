@@ -24,6 +24,18 @@ void note_silence(SignalStore::Rhythm& rhythm, Duration interval, Time at) {
     silence = {*rhythm.last, at, before};
 }
 
+// A message comes after `interval`.
+void note_pace(SignalStore::Rhythm& rhythm, Duration interval, Time at) {
+  auto& slowing = rhythm.slowing;
+  if (slowing && slowing->over != *rhythm.last) slowing.reset();
+  const Duration usual = slowing ? slowing->gap : rhythm.gap;
+  const bool is_slow = usual > Duration::zero() &&
+                       seconds(interval) > SignalStore::Rhythm::kSlowPace * seconds(usual);
+  if (!is_slow) return;
+  if (!slowing) slowing = {*rhythm.last, at, usual};
+  slowing->over = at;
+}
+
 }  // namespace
 
 using monitor::smoothed;
@@ -42,6 +54,7 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
     note_pause(rhythm, interval, seen.topic);
     rhythm.interval = smoothed(rhythm.interval, interval);
+    note_pace(rhythm, interval, at);
     note_silence(rhythm, interval, at);
   }
   rhythm.last = topic.last = at;
