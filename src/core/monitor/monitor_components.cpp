@@ -170,7 +170,7 @@ void Monitor::remember(const History& past) {
       ComponentState& state = write_.components[intended->component];
       state.intended_lifecycle = intended->state;
       state.brought.reset();
-      if (intended->is_owed) state.brought = Brought{Lifecycle::kInactive, false, true, event.at};
+      if (intended->is_owed) write_.components.owe_activation(intended->component, event.at);
     }
     if (const auto* came_up = std::get_if<CameUp>(&event.what)) {
       ComponentState& state = write_.components[came_up->component];
