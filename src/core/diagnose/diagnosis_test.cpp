@@ -131,6 +131,21 @@ TEST(Diagnosis, AnEffectThatOutlastsItsFirstCauseMayHaveALaterOne) {
   EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kPi, kKappa));
 }
 
+// Its process had exited by then, whenever its rule fired. Without that it began too late.
+TEST(Diagnosis, AFailureBeginsWithTheEndOfItsProcess) {
+  const auto own_after = [](Time exited) {
+    Scene scene = chain();
+    scene.fail("A").fail("B");
+    scene->states.state(scene.rule("A")).onset = Onset{Time(95s), Time(95s)};
+    scene->states.state(scene.rule("B")).onset = Onset{Time(86s), Time(86s)};
+    scene.process("a", ProcessState::kGone);
+    scene->components[scene.component("a")].process_since = exited;
+    return own(scene, "B");
+  };
+  EXPECT_LT(own_after(Time(85s)), 0.5);
+  EXPECT_DOUBLE_EQ(own_after(Time(94s)), 1);
+}
+
 TEST(Diagnosis, LooksThroughHealthyComponents) {
   Scene scene = chain();
   scene.fail("A").fail("C");
