@@ -65,7 +65,7 @@ struct ComponentState {
   // was stopped, as the operating system says. Set by ComponentStates::set_known_dead().
   std::optional<Time> known_dead{};
   int missed_probes = 0;        // in a row, since it answered last
-  Time missed_since{};          // when it was known that the first of them got no answer
+  Time missed_since{};          // when it was known that the second of them got no answer
   bool answers_probes = false;  // it did, since its process began
   Time answered = kLongAgo;     // when it did so last
   Questioned questioned{};
