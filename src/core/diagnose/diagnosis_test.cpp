@@ -160,6 +160,16 @@ TEST(Diagnosis, FollowsWhatWasLearned) {
   EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kPi, kappa));
 }
 
+// After a long time beside it without an effect it explains none, until it is seen to.
+TEST(Diagnosis, OneOutcomeRefutesAllExposure) {
+  Scene scene = chain();
+  scene.fail("A").fail("B");
+  scene->couplings.set(scene.rule("A"), scene.rule("B"), {0, 0, 1000});
+  EXPECT_GT(own(scene, "B"), 0.5);
+  scene->couplings.cleared(scene.rule("A"), scene.rule("B"));
+  EXPECT_LT(own(scene, "B"), 0.5);
+}
+
 TEST(Diagnosis, IsTakenFromAFailureByALesserOneToo) {
   Scene scene(failure_of("a", "A", "WARNING") + failure_of("b", "B"));
   scene.link("a", "b").fail("A").fail("B");
