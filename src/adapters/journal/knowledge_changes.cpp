@@ -13,6 +13,7 @@ KnowledgeChanges::KnowledgeChanges(const Knowledge& knowledge)
     couplings_.emplace_back(all.begin(), all.end());
     latencies_.push_back(knowledge.latencies.learned(RuleId(r)));
     transients_.push_back(knowledge.transients.seen(RuleId(r)));
+    coincidences_seen_.push_back(knowledge.coincidences.changes(RuleId(r)));
   }
 }
 
@@ -52,11 +53,27 @@ Learned KnowledgeChanges::learned() {
     for (LearnedLatency& each : named(rules.rules[r].name, seen))
       learned.latencies.push_back(std::move(each));
   }
-  if (knowledge_.coincidences != coincidences_) {
-    learned.coincidences = named(knowledge_.coincidences, coincidences_, rules);
-    coincidences_ = knowledge_.coincidences;
+  for (std::size_t r = 0; r < coincidences_seen_.size(); ++r) {
+    const std::uint64_t changes = knowledge_.coincidences.changes(RuleId(r));
+    if (std::exchange(coincidences_seen_[r], changes) != changes)
+      note_coincidences_of(RuleId(r), learned.coincidences);
   }
   return learned;
+}
+
+void KnowledgeChanges::note_coincidences_of(RuleId rule, std::vector<LearnedCoincidence>& changed) {
+  const auto count_of = [&](const Coincidences& all, RuleId other) {
+    return other == rule ? all.times(rule) : all.together(rule, other);
+  };
+  const auto note = [&](RuleId other) {
+    const int count = count_of(knowledge_.coincidences, other);
+    if (count == count_of(coincidences_, other)) return;
+    coincidences_.set(rule, other, count);
+    changed.push_back(
+        coincidence_of(knowledge_.rules[rule].name, knowledge_.rules[other].name, count));
+  };
+  note(rule);
+  for (const RuleId partner : knowledge_.coincidences.partners(rule)) note(partner);
 }
 
 std::optional<KnownRobot> KnowledgeChanges::robot(Time now) {

@@ -26,6 +26,9 @@ class KnowledgeChanges {
   std::optional<KnownRobot> robot(Time now);
 
  private:
+  // Takes time by the partners of the rule: no step looks at all pairs of failures.
+  void note_coincidences_of(RuleId rule, std::vector<LearnedCoincidence>& changed);
+
   const Knowledge& knowledge_;
 
   // As written last.
@@ -34,6 +37,7 @@ class KnowledgeChanges {
   std::vector<Latencies::Learned> latencies_;
   std::vector<Transients::Seen> transients_;
   Coincidences coincidences_;
+  std::vector<std::uint64_t> coincidences_seen_;  // Coincidences::changes(), by rule
 
   KnownRobot robot_;
   std::uint64_t robot_changes_ = 0;

@@ -145,6 +145,8 @@ class Trail {
     if (!command) return give_up(body, command.error());
     if (rules_[command->purpose.strategy].is_last_resort) return;
     Interrupted* found = find(command->purpose.strategy);
+    // It gives back what a strategy that is over owes, and the next culprit owes that, too.
+    if (found == nullptr && command->purpose.undoes) return;
     // A person may have ordered it: then it was not chosen.
     if (found == nullptr) found = &open_anew(command->purpose.strategy);
     found->requests.emplace_back();

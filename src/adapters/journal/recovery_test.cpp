@@ -264,5 +264,17 @@ TEST_F(OrderedRun, OneThatFailedAndIsOrderedAnewHasNotFailed) {
   EXPECT_EQ(left[0].requests.size(), 1u);
 }
 
+// A restart was paused half-way, and then the camera was activated: nothing of that is to be continued.
+TEST_F(OrderedRun, WhatAnAbandonedStrategyOwedIsNoStrategyUnderWay) {
+  const Command activates{
+      {2}, ComponentId(0), ChangeLifecycle{Transition::kActivate}, 1s, {restart, 0, true}};
+  const auto left =
+      left_by({event(StrategyChosen{restart, {}, {}, false, {}, {}}),
+               intent(1, ChangeLifecycle{Transition::kDeactivate}, restart),
+               event(StrategyAbandoned{restart, "paused by Ann"}),
+               {0, kRecoveredAt, std::string(kind::kIntent), line_of(activates, rules)}});
+  EXPECT_TRUE(left.empty());
+}
+
 }  // namespace
 }  // namespace culprit::journal

@@ -518,6 +518,7 @@ void Analyzer::note_coincidence(RuleId id) {
   const auto& own = knowledge_.rules[id].components;
   std::vector<RuleId> others;
   for (const RuleId other : knowledge_.states.active()) {
+    if (others.size() > Coincidences::kMostTogether) break;  // no pair of so many counts
     const auto& began = knowledge_.states[other].onset;
     // A repair of the other one may have caused this one.
     if (!began || other == id || onset.latest > knowledge_.states[other].failing_since) continue;

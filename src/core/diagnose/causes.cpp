@@ -110,6 +110,19 @@ bool is_seen_twice(RuleId j, RuleId i, std::span<const ComponentId> touched,
          });
 }
 
+// Stands for the trouble of its components, too: its rule may have fired long after the process was down, as while
+// culprit was deaf.
+void begin_with_its_process(CauseNode& failure,
+                            std::span<const std::optional<TroubleSeen>> troubles,
+                            const Knowledge& knowledge) {
+  for (const ComponentId c : touched_by(failure.rule, knowledge)) {
+    const auto& seen = troubles[c.index];
+    const bool is_proof =
+        seen && (seen->trouble == Trouble::kExited || seen->trouble == Trouble::kStopped);
+    if (is_proof) failure.onset.earliest = std::min(failure.onset.earliest, seen->onset.earliest);
+  }
+}
+
 // Did its function never work while culprit watched?
 bool never_worked(RuleId rule, const Knowledge& knowledge) {
   return knowledge.states[rule].detection.last_false == kLongAgo;
@@ -166,6 +179,9 @@ void Causes::add_troubles(const Knowledge& knowledge,
     if (node.kind != CauseNode::Kind::kFailure) continue;
     for (const ComponentId c : touched_by(node.rule, knowledge))
       began[c.index] = std::max(began[c.index], std::optional(node.onset.latest));
+  }
+  for (CauseNode& node : nodes_) {
+    if (node.kind == CauseNode::Kind::kFailure) begin_with_its_process(node, troubles, knowledge);
   }
   std::vector<ComponentId> components;
   for (std::size_t c = 0; c < troubles.size(); ++c) {

@@ -82,13 +82,25 @@ bool Diagnosis::hangs_by_itself(std::size_t i) const {
 
 Time Diagnosis::may_wait_until(std::size_t i) const {
   Time until = kLongAgo;
+  const auto may_wait_for = [&](ComponentId supplier, Trouble trouble, Time since) {
+    if (answers_nothing(trouble))
+      until =
+          std::max(until, may_wait_for_answer_until(causes_[i].rule, supplier, since, knowledge_));
+  };
   for_each(causes_.causes(i), [&](std::size_t j) {
     const CauseNode& cause = causes_[j];
-    if (cause.is_rule() && (is_known_dead(j) || is_about_hang(cause.rule, knowledge_)))
+    if (cause.kind == CauseNode::Kind::kTrouble)
+      return may_wait_for(cause.component, cause.trouble, cause.onset.latest);
+    if (!cause.is_rule() || until == kNever) return;
+    if (is_known_dead(j) || is_about_hang(cause.rule, knowledge_)) {
       until = kNever;
-    if (cause.kind == CauseNode::Kind::kTrouble && answers_nothing(cause.trouble))
-      until = std::max(until, may_wait_for_answer_until(causes_[i].rule, cause.component,
-                                                        cause.onset.latest, knowledge_));
+      return;
+    }
+    // It fires because a supplier is down, and does not repair that.
+    for (const ComponentId c : touched_by(cause.rule, knowledge_)) {
+      if (const auto seen = trouble_of(c, knowledge_))
+        may_wait_for(c, seen->trouble, seen->onset.latest);
+    }
   });
   return until;
 }

@@ -35,6 +35,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "diagnose/causes.h"
@@ -58,6 +59,8 @@ class Diagnosis {
   double against_others(std::size_t i) const { return against_others_[i]; }
   // pi_i
   double prior(std::size_t i) const { return prior_[i]; }
+  // Other failures that wait for a person with j and are about one of its components; empty if j waits for none.
+  std::span<const std::size_t> twins(std::size_t j) const { return twins_[j]; }
   // kappa(j -> i)
   double kappa(std::size_t j, std::size_t i) const;
   // Until when the process that node i is about may hang only because a supplier answers nothing. kLongAgo:
@@ -95,9 +98,8 @@ class Diagnosis {
 
   const Knowledge& knowledge_;
   const Causes& causes_;
-  // By node: other failures that are about one of its components, if it and they wait for a person.
-  std::vector<std::vector<std::size_t>> twins_;
-  std::vector<double> prior_;  // pi_i
+  std::vector<std::vector<std::size_t>> twins_;  // by node
+  std::vector<double> prior_;                    // pi_i
   std::vector<double> against_others_;
   std::vector<double> own_;
   std::vector<double> claims_;  // of node i: the sum of kappa(j -> i) g(j -> i) R_j over its causes

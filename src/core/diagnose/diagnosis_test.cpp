@@ -131,6 +131,21 @@ TEST(Diagnosis, AnEffectThatOutlastsItsFirstCauseMayHaveALaterOne) {
   EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kPi, kKappa));
 }
 
+// Its process had exited by then, whenever its rule fired. Without that it began too late.
+TEST(Diagnosis, AFailureBeginsWithTheEndOfItsProcess) {
+  const auto own_after = [](Time exited) {
+    Scene scene = chain();
+    scene.fail("A").fail("B");
+    scene->states.state(scene.rule("A")).onset = Onset{Time(95s), Time(95s)};
+    scene->states.state(scene.rule("B")).onset = Onset{Time(86s), Time(86s)};
+    scene.process("a", ProcessState::kGone);
+    scene->components[scene.component("a")].process_since = exited;
+    return own(scene, "B");
+  };
+  EXPECT_LT(own_after(Time(85s)), 0.5);
+  EXPECT_DOUBLE_EQ(own_after(Time(94s)), 1);
+}
+
 TEST(Diagnosis, LooksThroughHealthyComponents) {
   Scene scene = chain();
   scene.fail("A").fail("C");
@@ -143,6 +158,16 @@ TEST(Diagnosis, FollowsWhatWasLearned) {
   scene->couplings.set(scene.rule("A"), scene.rule("B"), {1, 9});
   const double kappa = (2 * kKappa + 1) / 12;
   EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kPi, kappa));
+}
+
+// After a long time beside it without an effect it explains none, until it is seen to.
+TEST(Diagnosis, OneOutcomeRefutesAllExposure) {
+  Scene scene = chain();
+  scene.fail("A").fail("B");
+  scene->couplings.set(scene.rule("A"), scene.rule("B"), {0, 0, 1000});
+  EXPECT_GT(own(scene, "B"), 0.5);
+  scene->couplings.cleared(scene.rule("A"), scene.rule("B"));
+  EXPECT_LT(own(scene, "B"), 0.5);
 }
 
 TEST(Diagnosis, IsTakenFromAFailureByALesserOneToo) {

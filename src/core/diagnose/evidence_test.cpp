@@ -106,6 +106,29 @@ TEST_F(EvidenceFor, OfTwoCausesTheOtherOneIsLeft) {
   EXPECT_EQ(of("B", "C").front().without, "");
 }
 
+// Seven rules say that a was given up long before: that is one cause of B, and only just likelier than its own.
+TEST(Otherwise, CountsFailuresOfOneGivenUpComponentOnce) {
+  std::string again;
+  for (const char name : std::string("123456"))
+    again += std::string("RULE Again") + name +
+             "\nPOLICIES ERROR\nTRIGGER y > 1\nSTRATEGY again 50 10\nADAPTATION a restart 2\n";
+  Scene scene(failure_of("a", "A") + failure_of("b", "B") + again);
+  scene.link("a", "b").exhaust("A").fail("B");
+  for (const char name : std::string("123456")) scene.exhaust(std::string("Again") + name);
+  for (const RuleId given_up : scene->states.exhausted())
+    scene->states.state(given_up).onset = Onset{Time(5s), Time(5s)};
+  scene->states.state(scene.rule("B")).worked_until = Time(84s);
+  const Examination found(*scene, scene->states.active());
+  const Causes& causes = found.causes();
+  const std::size_t b = causes.index_of(scene.rule("B"));
+  ASSERT_LT(found.diagnosis().of(b), 0.5);
+  const Otherwise otherwise(b, causes, found.diagnosis());
+  const std::size_t a = causes.index_of(scene.rule("A"));
+  EXPECT_EQ(otherwise.likeliest(), a);
+  EXPECT_EQ(causes[otherwise.without(a)].rule, scene.rule("Again1"))
+      << "the next of the same cause";
+}
+
 TEST_F(EvidenceFor, WhatWasLearnedCounts) {
   scene_.fail("A").fail("B");
   scene_->couplings.set(scene_.rule("A"), scene_.rule("B"), {1, 9});

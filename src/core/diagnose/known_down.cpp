@@ -38,11 +38,30 @@ bool is_about_hang(RuleId rule, const Knowledge& knowledge) {
   });
 }
 
+namespace {
+
+// May a strategy of any rule bring back what answers nothing? A restart needs a process that runs.
+bool is_begun_anew_by_any(ComponentId component, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  const bool runs = knowledge.components[component].process == ProcessState::kRunning;
+  const auto begins_it_anew = [&](StrategyId s) {
+    return std::ranges::any_of(rules[s].adaptations, [&](const Adaptation& a) {
+      return a.component == component &&
+             (launches(a) || (runs && a.type == AdaptationType::kRestart));
+    });
+  };
+  return std::ranges::any_of(knowledge.states.touching(component), [&](RuleId rule) {
+    return std::ranges::any_of(rules[rule].strategies, begins_it_anew);
+  });
+}
+
+}  // namespace
+
 Time may_wait_for_answer_until(RuleId failure, ComponentId supplier, Time since,
                                const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[failure];
   const bool has_end = knowledge.states.is_active(failure) && state.search.attempts == 0 &&
-                       knowledge.states.touching(supplier).empty();
+                       !is_begun_anew_by_any(supplier, knowledge);
   return has_end ? later(std::max(state.failing_since, since), kLongestWaitForAnswer) : kNever;
 }
 

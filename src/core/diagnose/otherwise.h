@@ -5,9 +5,11 @@
 //     R_i'      = P'(own i) R_i / P(own i)
 //     share_j'  = (1 - R_i') kappa'(j -> i) g'(j -> i) R_j / sum_k kappa'(k -> i) g'(k -> i) R_k
 //
-// All else stays as it was found: what i explains, and R_j. Symbols: diagnosis.h.
+// All else stays as it was found: what i explains, and R_j. Twins (Diagnosis::twins) count as one cause here, too:
+// the product and the sum take the one that explains i best then. Symbols: diagnosis.h.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "diagnose/diagnosis.h"
@@ -16,6 +18,7 @@ namespace culprit::diagnose {
 
 class Otherwise {
  public:
+  // `diagnosis` must outlive it.
   Otherwise(std::size_t i, const Causes& causes, const Diagnosis& diagnosis);
 
   // As it was found.
@@ -34,6 +37,7 @@ class Otherwise {
     std::size_t node = 0;
     double passes = 0;  // kappa g
     double own = 0;     // R_j
+    std::span<const std::size_t> twins{};
   };
   std::size_t likeliest(double prior, std::size_t changed, double passes) const;
 

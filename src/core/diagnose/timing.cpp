@@ -119,10 +119,10 @@ std::vector<Time> published_last(const Knowledge& knowledge) {
   return last;
 }
 
-// One that is busy may answer nothing for long, and publish.
+// One that is busy may answer nothing for long, and publish. One that waits in a call may miss a probe.
 Onset onset_of_hang(const ComponentState& state, Time published) {
   const Time found = state.alive == false ? state.alive_since : kNever;
-  const Time missed = state.missed_probes > 0 ? std::max(state.missed_since, published) : kNever;
+  const Time missed = state.missed_probes > 1 ? std::max(state.missed_since, published) : kNever;
   return {state.answered, std::min({found, missed, state.questioned.unanswered.value_or(kNever)})};
 }
 

@@ -10,7 +10,7 @@
 //   rate, not silent         detection - window               detection              2 gaps; or until the topic
 //                                                                                    is slow for the window
 //   alive                    when that changed                the same               none: asked
-//   alive, it hangs          last answer                      first one missed       none: asked
+//   alive, it hangs          last answer                      second one missed      none: asked
 //   lifecycle                when the state was read          the same               none: asked
 //   a value                  t - reading - most lateness      t - least lateness     reading + most lateness
 //
@@ -58,8 +58,9 @@ bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
 // By component: when the last message came on a topic that it alone publishes; kLongAgo: none did.
 std::vector<Time> published_last(const Knowledge& knowledge);
 // For a component that hangs, or did not answer a probe: its failure may have begun right after its
-// last answer, and had begun when the first probe got none and its last message had come: `published`,
-// as published_last() says. Only several such probes show that it hangs.
+// last answer, and had begun when a second probe in a row got none and its last message had come:
+// `published`, as published_last() says. A single one may be lost, or come while the component waits for a
+// supplier that answers still; and mostly more than two have to show that it hangs.
 Onset onset_of_hang(const ComponentState& state, Time published);
 // How long after a change the rule reads it at the latest, besides its lateness: the period of its
 // signal, and the window that it looks at.

@@ -29,6 +29,17 @@ void StrategyExecutor::begin(StrategyId strategy, Time now, std::vector<std::str
   add_run(strategy).obstacles = std::move(obstacles);
 }
 
+void StrategyExecutor::give_back(StrategyId strategy, ComponentId component, Time now) {
+  write_.attempts.give_back(strategy, now);
+  Run& run = add_run(strategy);
+  run.is_undoing = true;
+  const auto& adaptations = knowledge_.rules[strategy].adaptations;
+  const auto place = std::ranges::find(adaptations, component, &Adaptation::component);
+  CULPRIT_ASSERT(place != adaptations.end());
+  run.adaptation = static_cast<std::size_t>(place - adaptations.begin());
+  run.undo.push_back({component, execute::LifecycleGoal{Lifecycle::kActive, {}}});
+}
+
 StrategyExecutor::Run& StrategyExecutor::add_run(StrategyId strategy) {
   const RuleId rule = knowledge_.rules[strategy].rule;
   std::erase_if(runs_, [&](const Run& old) {
@@ -268,6 +279,7 @@ Expected<std::vector<Goal>> StrategyExecutor::goals_of(const Run& run, Time now)
   if (state.intended_lifecycle != Lifecycle::kUnknown)
     write_.components.intend_lifecycle(adaptation.component, Lifecycle::kInactive, now,
                                        write_.events);
+  owe_no_more(adaptation.component, now);
   return std::vector<Goal>();
 }
 
@@ -426,6 +438,9 @@ void StrategyExecutor::finish_goal(Run& run, Time now) {
       return std::holds_alternative<execute::LifecycleGoal>(goal);
     });
     if (is_last) note_lifecycle(pursuit, now);
+    const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
+    if (is_to_last && lifecycle != nullptr && lifecycle->target == Lifecycle::kInactive)
+      owe_no_more(pursuit.component(), now);
     if (const auto* parameter = std::get_if<execute::ParameterGoal>(&pursuit.goal()))
       forget_owed(pursuit.component(), parameter->name);
     // The manager of a group goes on being the driver of its members.
@@ -544,9 +559,18 @@ void StrategyExecutor::owe_restart(const Run& run, Time now) {
 void StrategyExecutor::owe(const execute::Undo& undo, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
   if (lifecycle == nullptr || lifecycle->target != Lifecycle::kActive) return;
-  ComponentState& state = write_.components[undo.component];
-  state.brought = Brought{Lifecycle::kInactive, false, true, now};
-  write_.events.tell(now, LifecycleIntended{undo.component, state.intended_lifecycle, true});
+  write_.components.owe_activation(undo.component, now);
+  write_.events.tell(
+      now, LifecycleIntended{undo.component,
+                             knowledge_.components[undo.component].intended_lifecycle, true});
+}
+
+// A last resort wants it deactivated, as it is already: what an earlier strategy owes is not given back any more.
+void StrategyExecutor::owe_no_more(ComponentId component, Time now) {
+  ComponentState& state = write_.components[component];
+  if (!state.is_to_be_given_back()) return;
+  state.brought = Brought{Lifecycle::kInactive};
+  write_.events.tell(now, LifecycleIntended{component, state.intended_lifecycle});
 }
 
 // The component that keeps another one, which the strategy took down, from being brought up again: one

@@ -46,6 +46,10 @@ class StrategyExecutor {
   // those that have an obstacle (by place; empty: none), which are left out. Then it failed for that.
   void begin(StrategyId strategy, Time now, std::vector<std::string> obstacles = {});
 
+  // Activates what the strategy, or one like it, has left inactive: an undo that is not over yet.
+  // @pre as begin()'s; the rule is quiet, and the strategy adapts the component
+  void give_back(StrategyId strategy, ComponentId component, Time now);
+
   // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing. Ignored if it
   // had failed and there is nothing to undo.
   // @pre nothing was begun yet
@@ -131,6 +135,7 @@ class StrategyExecutor {
   void tell_left_out(const Run& run, const std::string& why, Time now);
   void owe(const execute::Undo& undo, Time now);
   void owe_restart(const Run& run, Time now);
+  void owe_no_more(ComponentId component, Time now);
   void finish_goal(Run& run, Time now);
   bool replace_hung_member(Run& run) const;
   void finish_undo(Run& run, Time now);

@@ -19,6 +19,11 @@ void Attempts::begin(StrategyId strategy, Time now) {
   if (!states_.rules()[strategy].is_last_resort) states_.enter(rule, RulePhase::kAttempting);
 }
 
+void Attempts::give_back(StrategyId strategy, Time now) {
+  begin(strategy, now);
+  of(strategy).stage = Attempt::Stage::kUndoing;
+}
+
 void Attempts::resume(StrategyId strategy, Time now) {
   states_.begin_search(states_.rules()[strategy].rule, now);
   begin(strategy, now);

@@ -19,6 +19,8 @@ class Attempts {
 
   // @pre none of the rule is under way
   void begin(StrategyId strategy, Time now);
+  // An undo that an earlier attempt of the strategy owes, and nothing else. @pre as begin()'s; the rule is quiet
+  void give_back(StrategyId strategy, Time now);
   // One that an earlier process began; culprit did not watch meanwhile. @pre as begin()'s
   void resume(StrategyId strategy, Time now);
 

@@ -12,6 +12,7 @@
 // lose the last one. A failure that an earlier process detected does not begin again with the next one.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <span>
 #include <utility>
@@ -31,16 +32,18 @@ class Coincidences {
 
   using Pair = std::pair<RuleId, RuleId>;  // the lesser one first
 
-  explicit Coincidences(const RuleSet& rules) : began_(rules.rules.size(), 0) {}
+  explicit Coincidences(const RuleSet& rules) : rules_(rules.rules.size()) {}
 
   // The failure began, together with these others.
   void began(RuleId rule, std::span<const RuleId> others);
 
   // n_i
-  int times(RuleId rule) const { return began_[rule.index]; }
+  int times(RuleId rule) const { return rules_[rule.index].began; }
   // n_ij
   int together(RuleId a, RuleId b) const;
   const std::map<Pair, int>& pairs() const { return together_; }
+  // Those that began together with it at least once, ascending.
+  std::span<const RuleId> partners(RuleId rule) const { return rules_[rule.index].partners; }
   bool coincide(RuleId a, RuleId b) const;
   // The rules that coincide with it, ascending.
   std::vector<RuleId> of(RuleId rule) const;
@@ -50,12 +53,20 @@ class Coincidences {
   // All counts of the rule are zero.
   void forget(RuleId rule);
 
-  bool operator==(const Coincidences&) const = default;
+  // Grows with each call of these three that names the rule first: n_i, or n_ij of a partner, may be another then.
+  // A copy of the counts is compared rule by rule with it, and not pair by pair.
+  std::uint64_t changes(RuleId rule) const { return rules_[rule.index].changes; }
 
  private:
+  struct OfRule {
+    int began = 0;
+    std::vector<RuleId> partners{};
+    std::uint64_t changes = 0;
+  };
   static Pair ordered(RuleId a, RuleId b) { return a < b ? Pair(a, b) : Pair(b, a); }
+  int& count_of(RuleId a, RuleId b);
 
-  std::vector<int> began_;
+  std::vector<OfRule> rules_;
   std::map<Pair, int> together_;
 };
 

@@ -68,6 +68,22 @@ TEST_F(CoincidencesOfThree, CountsOfAnEarlierRunGoOn) {
   EXPECT_TRUE(coincidences_.coincide(a_, b_));
 }
 
+// A reader that follows the counts looks at that rule and its partners alone.
+TEST_F(CoincidencesOfThree, ARuleChangesWhenItBegins) {
+  begin_together(a_, b_);
+  begin_together(b_, c_);
+  EXPECT_THAT(coincidences_.partners(b_), ElementsAre(a_, c_));
+  const auto changes = [&] {
+    return std::vector{coincidences_.changes(a_), coincidences_.changes(b_),
+                       coincidences_.changes(c_)};
+  };
+  const auto before = changes();
+  coincidences_.began(c_, std::vector<RuleId>{a_});
+  EXPECT_THAT(changes(), ElementsAre(before[0], before[1], before[2] + 1));
+  EXPECT_THAT(coincidences_.partners(a_), ElementsAre(b_, c_));
+  EXPECT_EQ(coincidences_.together(a_, c_), 1);
+}
+
 TEST_F(CoincidencesOfThree, OnlyTheCountsOfOneRuleAreForgotten) {
   for (int k = 0; k < 2; ++k) begin_together(a_, b_);
   for (int k = 0; k < 2; ++k) begin_together(b_, c_);

@@ -1,5 +1,7 @@
 #include "knowledge/component_states.h"
 
+#include <algorithm>
+
 namespace culprit {
 
 std::string_view to_string(Lifecycle state) {
@@ -22,6 +24,17 @@ std::string_view to_string(Lifecycle state) {
 
 ComponentStates::ComponentStates(const RuleSet& rules)
     : components_(rules.components.size()), parameters_(rules.parameters.size()) {}
+
+void ComponentStates::owe_activation(ComponentId component, Time at) {
+  ComponentState& state = components_[component.index];
+  const int tries = state.is_to_be_given_back() ? state.brought->tries + 1 : 0;
+  state.brought = Brought{Lifecycle::kInactive, false, true, at, tries};
+  if (std::ranges::find(owed_, component) == owed_.end()) owed_.push_back(component);
+}
+
+void ComponentStates::forget_given_back() {
+  std::erase_if(owed_, [&](ComponentId c) { return !components_[c.index].is_to_be_given_back(); });
+}
 
 void ComponentStates::set_known_dead(ComponentId component, std::optional<Time> since) {
   std::optional<Time>& known = components_[component.index].known_dead;

@@ -39,6 +39,7 @@ struct Brought {
   // It was deactivated, and could not be activated again: when that was undone, or by a restart.
   bool is_owed = false;
   Time since = kLongAgo;  // when that was known, if it is owed
+  int tries = 0;          // to activate it again, since then
 };
 
 // A trouble (diagnose/trouble.h) that is over: that it was not active, or another that a failure was there
@@ -64,7 +65,7 @@ struct ComponentState {
   // was stopped, as the operating system says. Set by ComponentStates::set_known_dead().
   std::optional<Time> known_dead{};
   int missed_probes = 0;        // in a row, since it answered last
-  Time missed_since{};          // when it was known that the first of them got no answer
+  Time missed_since{};          // when it was known that the second of them got no answer
   bool answers_probes = false;  // it did, since its process began
   Time answered = kLongAgo;     // when it did so last
   Questioned questioned{};
@@ -140,6 +141,12 @@ class ComponentStates {
   // Sets ComponentState::coming_up, and reports it if it changed.
   void note_coming_up(ComponentId component, const ComingUp& how, Time at, EventLog& events);
 
+  // A strategy has left it deactivated, or has tried in vain to activate it again.
+  void owe_activation(ComponentId component, Time at);
+  // Those that may be owed their activation (ComponentState::is_to_be_given_back).
+  const std::vector<ComponentId>& owed() const { return owed_; }
+  void forget_given_back();
+
   void set_known_dead(ComponentId component, std::optional<Time> since);
   bool is_any_known_dead() const { return known_dead_ > 0; }
 
@@ -159,6 +166,7 @@ class ComponentStates {
  private:
   std::vector<ComponentState> components_;
   std::vector<std::optional<Value>> parameters_;
+  std::vector<ComponentId> owed_;
   int known_dead_ = 0;  // how many are
   int unreached_ =
       0;  // silent computers, those out of reach and clocks that stand still, by component

@@ -24,11 +24,16 @@ Coupling& Couplings::place(RuleId cause, RuleId effect) {
   return found->coupling;
 }
 
+void Couplings::set(RuleId cause, RuleId effect, Coupling coupling) {
+  coupling.spared = std::min(coupling.spared, Coupling::kMostSpared);
+  place(cause, effect) = coupling;
+}
+
 void Couplings::learn(RuleId cause, RuleId effect, Coupling outcome) {
   Coupling& coupling = place(cause, effect);
   coupling.cleared = forgetting_ * coupling.cleared + outcome.cleared;
   coupling.stayed = forgetting_ * coupling.stayed + outcome.stayed;
-  coupling.spared = forgetting_ * coupling.spared + outcome.spared;
+  coupling.spared = std::min(forgetting_ * coupling.spared + outcome.spared, Coupling::kMostSpared);
 }
 
 }  // namespace culprit

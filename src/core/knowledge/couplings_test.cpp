@@ -41,6 +41,18 @@ TEST(Couplings, ConvergeToTheTrueShare) {
   EXPECT_NEAR(couplings.of(kA, kB).mean(0.95), 0.25, 0.01);
 }
 
+// It came and went for hours, and nothing followed. Later it is found to be the cause, once.
+TEST(Couplings, NeverLearnMoreFromExposureThanOneOutcomeCanRefute) {
+  const RuleSet rules = two_rules();
+  Couplings couplings(rules);
+  for (int i = 0; i < 1000; ++i) couplings.stayed_away(kA, kB, 10);
+  EXPECT_DOUBLE_EQ(couplings.of(kA, kB).mean(Coupling::kUsual), 1.9 / 52);
+  couplings.cleared(kA, kB);
+  EXPECT_DOUBLE_EQ(couplings.of(kA, kB).mean(Coupling::kUsual), 2.9 / 53);
+  couplings.set(kA, kB, {0, 0, 1e6});  // of an older culprit, or of many robots
+  EXPECT_DOUBLE_EQ(couplings.of(kA, kB).mean(Coupling::kUsual), 1.9 / 52);
+}
+
 TEST(Couplings, FollowADriftWithForgetting) {
   const RuleSet rules = two_rules();
   Couplings couplings(rules);

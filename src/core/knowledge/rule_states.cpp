@@ -168,18 +168,20 @@ std::optional<RuleId> RuleStates::awaiting_person_at(ComponentId component, Crit
   return worst_at(component, level, except, [this](RuleId id) { return awaits_person(id); });
 }
 
+bool RuleStates::reserves(const std::optional<Attempt>& attempt, ComponentId component) const {
+  if (!attempt || attempt->stage == Attempt::Stage::kSuspended) return false;
+  const auto& adapted = rules_[attempt->strategy].components;
+  return std::binary_search(adapted.begin(), adapted.end(), component);
+}
+
 const Attempt* RuleStates::reservation(ComponentId component) const {
-  const auto holds = [&](const std::optional<Attempt>& attempt) {
-    if (!attempt || attempt->stage == Attempt::Stage::kSuspended) return false;
-    const auto& adapted = rules_[attempt->strategy].components;
-    return std::binary_search(adapted.begin(), adapted.end(), component);
+  const auto is_last_resort = [&](const Attempt& each) {
+    return rules_[each.strategy].is_last_resort;
   };
   const Attempt* found = nullptr;
-  for (const RuleId id : touching(component)) {
-    const RuleState& state = states_[id.index];
-    if (holds(state.last_resort)) return &*state.last_resort;
-    if (found == nullptr && is_active(id) && holds(state.attempt)) found = &*state.attempt;
-  }
+  for_each_reservation(component, [&](const Attempt& each) {
+    if (found == nullptr || (is_last_resort(each) && !is_last_resort(*found))) found = &each;
+  });
   return found;
 }
 

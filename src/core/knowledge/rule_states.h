@@ -203,6 +203,15 @@ class RuleStates {
   // The strategy attempt that has `component` reserved, if any: from its choice until its verdict
   // and undoing, but while it is suspended. A last resort's, if there are several.
   const Attempt* reservation(ComponentId component) const;
+  // Calls `visit(attempt)` for each of these: a last resort goes beside another strategy.
+  template <class Visit>
+  void for_each_reservation(ComponentId component, Visit visit) const {
+    for (const RuleId id : touching(component)) {
+      const RuleState& state = states_[id.index];
+      if (reserves(state.last_resort, component)) visit(*state.last_resort);
+      if (is_active(id) && reserves(state.attempt, component)) visit(*state.attempt);
+    }
+  }
 
   // The strategy sets a parameter that `by` had set, and the more critical failure that this had resolved
   // came back: the value of `by` stays.
@@ -230,6 +239,7 @@ class RuleStates {
   std::optional<RuleId> worst_at(ComponentId component, Criticality level, RuleId except,
                                  Counts counts) const;
   void find_touching();
+  bool reserves(const std::optional<Attempt>& attempt, ComponentId component) const;
   static bool is_active(RulePhase phase) {
     return phase == RulePhase::kFailing || phase == RulePhase::kAttempting;
   }

@@ -105,6 +105,39 @@ TEST(ALaunch, DoesNotTakeAlongWhatOutlivesIt) {
   }
 }
 
+// It lived on when its launch ended. Later culprit ends it, while a last resort is under way beside: no person did that.
+TEST(ALaunch, DoesNotTakeAlongWhatCulpritEndsBesideALastResort) {
+  TestRobot robot(R"(
+CYCLE 100ms
+COMPONENT a NODE /a LAUNCH "a"
+COMPONENT b NODE /b LAUNCH "b"
+COMPONENT c NODE /c LAUNCH "c"
+RULE A
+  POLICIES ERROR
+  TRIGGER age(/a) > 300ms
+    STRATEGY redeploy_a 90 10
+      ADAPTATION a redeploy 30
+    STRATEGY safe 100 10 LASTRESORT WITHIN 500ms
+      ADAPTATION a set_parameter safe 1 1
+)");
+  for (const std::string name : {"a", "b", "c"})
+    robot.add(name, {}, "/" + name).parameters["safe"] = Value(std::int64_t{0});
+  robot.discover();
+  for (const std::string name : {"a", "b", "c"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, false});
+  robot.run_for(6s);
+  for (const std::string name : {"b", "c"}) robot.leave(name);
+  for (const std::string name : {"a", "b", "c"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
+  robot.run_for(Departures::kAlone + 1s);
+  robot["a"].fault = "redeploy";
+  robot.run_for(1min);
+  EXPECT_TRUE(robot.was_asked("a: stop process")) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("a: set safe")) << transcript(robot);
+  EXPECT_EQ(robot.count("a stays down"), 0u) << transcript(robot);
+  EXPECT_TRUE(robot.works("a")) << transcript(robot);
+}
+
 // A strategy that only sets a parameter ends no process.
 TEST(ALaunch, ThatSomebodyEndsDuringAReconfigurationIsNotStartedAgain) {
   TestRobot robot(R"(

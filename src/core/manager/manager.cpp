@@ -13,6 +13,7 @@
 #include "plan/awaits_valid_strategy.h"
 #include "plan/beside_exhausted.h"
 #include "plan/explained_by.h"
+#include "plan/giving_back.h"
 #include "plan/validity.h"
 
 namespace culprit {
@@ -118,12 +119,12 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   std::vector<Command> commands;
   if (!hears_) {
     next_plan_ = kNever;
-  } else if (analyzer_.anything_to_do(now_)) {
+  } else if (analyzer_.anything_to_do(now_) || may_give_back()) {
     react(commands);
   } else {
     executor_.advance(now_, commands);  // lets go of what has just succeeded
     troubles_.look(now_, false);
-    next_plan_ = analyzer_.next_start();
+    next_plan_ = next_planning(now_);
   }
   if (hears_) analyzer_.look_for_blind(now_);
   governor_.note(knowledge_.events);
@@ -372,8 +373,30 @@ void Manager::plan(Time now, std::vector<Command>& commands) {
         analyzer_.last_resorts().turn_to(decision.rule, now);
     }
   }
+  give_back(now);
   news_ = false;
   next_plan_ = next_planning(now);
+}
+
+bool Manager::may_give_back() const {
+  return !knowledge_.components.owed().empty() && autonomy_ == Autonomy::kAct &&
+         !governor_.is_paused();
+}
+
+// Activates what strategies have left inactive, if no failure asks for it any more. A culprit that has just begun
+// does not know yet what is down.
+void Manager::give_back(Time now) {
+  if (!may_give_back() || now < discovered_) return;
+  knowledge_.components.forget_given_back();
+  for (const ComponentId component : knowledge_.components.owed()) {
+    for (const RuleId rule : knowledge_.states.touching(component)) {
+      for (const StrategyId each : knowledge_.rules[rule].strategies) refresh_conditions(each, now);
+    }
+    const auto strategy = plan::giving_back(component, knowledge_);
+    if (strategy && !governor_.holds_back({.strategy = *strategy}, now) &&
+        !governor_.withholds(*strategy, now))
+      executor_.give_back(*strategy, component, now);
+  }
 }
 
 void Manager::ask(const Decision& decision, Time now, std::vector<Command>& commands) {
@@ -545,11 +568,13 @@ std::vector<Decision> Manager::allowed_plan(const std::vector<RuleId>& failures,
 // something is no longer withheld.
 Time Manager::next_planning(Time now) const {
   Time next = analyzer_.next_start();
-  if (next <= now) next = later(now, knowledge_.rules.cycle);
+  const Time next_cycle = later(now, knowledge_.rules.cycle);
+  if (next <= now) next = next_cycle;
+  if (may_give_back()) next = std::min(next, next_cycle);
   for (const RuleId id : knowledge_.states.active()) {
     const RuleState& state = knowledge_.states[id];
     if (state.phase != RulePhase::kFailing || state.is_advised) continue;
-    next = std::min(next, later(now, knowledge_.rules.cycle));
+    next = std::min(next, next_cycle);
     if (state.search.retry_at > now) next = std::min(next, state.search.retry_at);
     for (const StrategyId strategy : knowledge_.rules[id].strategies) {
       const Time allowed = knowledge_.withheld[strategy.index].until;

@@ -111,6 +111,8 @@ class Manager : public ManagingSystem {
   void abandon_all(const std::string& reason, Time now);
   void make_way_for(StrategyId strategy, Time now);
   void plan(Time now, std::vector<Command>& commands);
+  bool may_give_back() const;
+  void give_back(Time now);
   void ask(const Decision& decision, Time now, std::vector<Command>& commands);
   void begin_last_resorts(Time now);
   bool begin_last_resort(StrategyId strategy, Time now);  // false: it is held back

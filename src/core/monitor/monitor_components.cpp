@@ -170,7 +170,7 @@ void Monitor::remember(const History& past) {
       ComponentState& state = write_.components[intended->component];
       state.intended_lifecycle = intended->state;
       state.brought.reset();
-      if (intended->is_owed) state.brought = Brought{Lifecycle::kInactive, false, true, event.at};
+      if (intended->is_owed) write_.components.owe_activation(intended->component, event.at);
     }
     if (const auto* came_up = std::get_if<CameUp>(&event.what)) {
       ComponentState& state = write_.components[came_up->component];
@@ -342,7 +342,7 @@ void Monitor::on(Time at, const Probed& seen) {
   if (is_deaf_ && !seen.answered) return;
   if (seen.node > 0) return note_part_probed(seen, at);
   ComponentState& state = write_.components[seen.component];
-  if (state.missed_probes == 0) state.missed_since = at;
+  if (state.missed_probes == kMissedProbes - 1) state.missed_since = at;
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
   state.answers_probes |= seen.answered;
   if (seen.answered) {
@@ -542,7 +542,7 @@ void Monitor::note_silent(const std::string& host, Time at) {
     }
     silent.components.push_back(component);
     // More than a few questions without an answer.
-    if (state.missed_probes == 0) write_.components[component].missed_since = at;
+    if (state.missed_probes < kMissedProbes) write_.components[component].missed_since = at;
     write_.components[component].missed_probes = std::max(state.missed_probes, kMissedProbes);
     if (!state.host_silent) write_.components.set_host_silent(component, at);
     deadlines_.clear(return_of(component));

@@ -253,7 +253,7 @@ TEST(Monitor, NotesSinceWhenAnswersAreMissing) {
   watched.observe(7s, Probed{ComponentId(0), true});
   watched.observe(8s, Probed{ComponentId(0), false});
   watched.observe(9s, Probed{ComponentId(0), false});
-  EXPECT_EQ(state.missed_since - begin, 3s);
+  EXPECT_EQ(state.missed_since - begin, 4s) << "one alone may be lost";
 }
 
 TEST(Monitor, ALocalNodeHangsThatNeitherAnswersNorPublishes) {

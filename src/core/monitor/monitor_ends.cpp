@@ -8,24 +8,34 @@ namespace culprit {
 namespace {
 
 // Can the attempt end a process? One that only reconfigures, or goes through the lifecycle, cannot.
-bool may_end(const Attempt* attempt, const RuleSet& rules) {
-  if (attempt == nullptr) return false;
-  return std::ranges::any_of(rules[attempt->strategy].adaptations, [](const Adaptation& each) {
+bool may_end(const Attempt& attempt, const RuleSet& rules) {
+  return std::ranges::any_of(rules[attempt.strategy].adaptations, [](const Adaptation& each) {
     return each.type == AdaptationType::kRedeploy || each.type == AdaptationType::kStop ||
            each.type == AdaptationType::kStart;
   });
 }
 
+// Is there an attempt under way that can end its process, and for which `is_meant` is true?
+template <class IsMeant>
+bool may_be_ended(ComponentId component, const Knowledge& knowledge, IsMeant is_meant) {
+  bool is_any = false;
+  knowledge.states.for_each_reservation(component, [&](const Attempt& each) {
+    is_any = is_any || (may_end(each, knowledge.rules) && is_meant(each));
+  });
+  return is_any;
+}
+
+bool is_adapting(const Attempt& attempt) { return attempt.stage == Attempt::Stage::kAdapting; }
+
 // Does culprit end it? A strategy begins it anew, or reloads a component of its container: if the
 // container does not answer, it is replaced with all that it has.
 bool is_ended_here(ComponentId component, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
-  if (may_end(knowledge.states.reservation(component), rules)) return true;
+  if (may_be_ended(component, knowledge, [](const Attempt&) { return true; })) return true;
   const ComponentId home = container_of(component, rules).value_or(component);
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     if (container_of(ComponentId(c), rules) != home) continue;
-    const Attempt* attempt = knowledge.states.reservation(ComponentId(c));
-    if (may_end(attempt, rules) && attempt->stage == Attempt::Stage::kAdapting) return true;
+    if (may_be_ended(ComponentId(c), knowledge, is_adapting)) return true;
   }
   return false;
 }
@@ -39,10 +49,11 @@ void Monitor::on(Time at, const LauncherSeen& seen) {
 
 // Does a strategy under way end the process that was there before it?
 bool Monitor::is_being_ended(ComponentId component) const {
-  const Attempt* attempt = knowledge_.states.reservation(component);
-  return may_end(attempt, knowledge_.rules) && attempt->stage == Attempt::Stage::kAdapting &&
-         attempt->first_change != kNever &&
-         knowledge_.components[component].alive_since <= attempt->first_change;
+  const Time alive_since = knowledge_.components[component].alive_since;
+  return may_be_ended(component, knowledge_, [&](const Attempt& attempt) {
+    return is_adapting(attempt) && attempt.first_change != kNever &&
+           alive_since <= attempt.first_change;
+  });
 }
 
 void Monitor::on(Time at, const StartedHere& seen) { write_.departures.started_here(seen, at); }

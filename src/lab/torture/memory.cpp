@@ -61,6 +61,8 @@ void Memory::note(const Event& event) {
 void Memory::note(const Command& command) {
   if (rules_[command.purpose.strategy].is_last_resort) return;
   Interrupted* each = open(command.purpose.strategy);
+  // It gives back what a strategy that is over owes, and the next manager owes that, too.
+  if (each == nullptr && command.purpose.undoes) return;
   // A person may have ordered it: then no plan chose it.
   if (each == nullptr) {
     close(rules_[command.purpose.strategy].rule);

@@ -247,7 +247,17 @@ class Run {
     recorded_.push_back({now, std::move(observations), std::move(words)});
     if (dies_deciding(commands)) return;
     for (const Command& command : commands) robot_.execute(command);
+    end_with_launches();
     answer_questions();
+  }
+
+  // As the live session does.
+  void end_with_launches() {
+    if (manager_->governor().is_paused()) return;
+    for (std::size_t part = 0; part < scenario_.parts.size(); ++part) {
+      const int pid = manager_->knowledge().departures.to_end(ComponentId(part));
+      if (pid != 0) robot_.end_stand_in(part, pid);
+    }
   }
 
   void note_health() {

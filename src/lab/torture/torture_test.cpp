@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "language/checker.h"
+#include "torture/tortured_robot.h"
+
 namespace culprit::torture {
 namespace {
 
@@ -17,8 +20,8 @@ TEST(Torture, HundredsOfRobotsAreTreatedAsPromised) {
 }
 
 TEST(Torture, WhatWasOnceFoundStaysMended) {
-  for (const std::uint64_t seed :
-       {485u, 1293u, 1982u, 4047u, 4284u, 5524u, 13213u, 18280u, 28748u, 62054u})
+  for (const std::uint64_t seed : {485u, 1293u, 1982u, 4047u, 4284u, 5524u, 13213u, 18280u, 28748u,
+                                   62054u, 104963u, 121988u, 124431u})
     EXPECT_FALSE(run(draw(seed)).violation) << report(shrink(draw(seed)));
 }
 
@@ -42,6 +45,35 @@ TEST(Torture, APartThatNeedsAnExhaustedOneIsExcused) {
   EXPECT_TRUE(says(outcome, "Silent0 is exhausted"));
   EXPECT_TRUE(says(outcome, "Silent1 waits: it depends on c0, which may be the cause (Silent0)"));
   EXPECT_FALSE(outcome.violation) << testing::PrintToString(outcome.timeline);
+}
+
+// As the supervisor does, before it reports the process.
+TEST(TorturedRobot, ReportsInWhosePlaceAStartedProcessStands) {
+  Scenario scenario;
+  scenario.seed = 1;
+  scenario.parts.resize(1);
+  scenario.has_launcher = true;
+  const RuleSet rules = *check(Source("torture.rules", rules_of(scenario))).rules;
+  TorturedRobot robot(scenario, rules);
+  const auto observed_until = [&](Time end) {
+    std::vector<Observation> seen;
+    while (robot.now() < end) robot.observe(end, seen);
+    return seen;
+  };
+  observed_until(Time(2s));
+  robot.befall({Time(2s), Mishap::Kind::kKill, 0});
+  robot.execute({{1}, ComponentId(0), StartProcess{}, 1s, {}});
+  const std::vector<Observation> seen = observed_until(Time(3s));
+  const auto started = std::find_if(seen.begin(), seen.end(), [](const Observation& each) {
+    return std::holds_alternative<StartedHere>(each.what);
+  });
+  ASSERT_NE(started, seen.end());
+  ASSERT_NE(started + 1, seen.end());
+  const auto& here = std::get<StartedHere>(started->what);
+  EXPECT_EQ(here.launcher, 7000);
+  const auto* process = std::get_if<ProcessSeen>(&(started + 1)->what);
+  ASSERT_NE(process, nullptr);
+  EXPECT_EQ(process->pid, here.pid);
 }
 
 TEST(Torture, TheSameSeedGivesTheSameRun) {

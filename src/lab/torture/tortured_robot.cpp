@@ -1,6 +1,7 @@
 #include "torture/tortured_robot.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace culprit::torture {
 namespace {
@@ -110,6 +111,7 @@ TorturedRobot::TorturedRobot(const Scenario& scenario, const RuleSet& rules)
       world_(scenario.seed),
       random_(world_.random("noise")),
       launcher_of_(scenario.parts.size(), scenario.has_launcher ? kFirstLauncher : 0),
+      started_here_(scenario.parts.size()),
       left_(scenario.parts.size(), kNever) {
   if (scenario.has_infrastructure)
     infrastructure_ = std::make_unique<simulation::Topic<int>>(
@@ -148,6 +150,7 @@ TorturedRobot::Source TorturedRobot::source_of(const Observation& observation) {
   // Observations of the operating system, and replies of its adapter, come one after the other.
   if (std::holds_alternative<ProcessSeen>(observation.what) ||
       std::holds_alternative<LauncherSeen>(observation.what) ||
+      std::holds_alternative<StartedHere>(observation.what) ||
       std::holds_alternative<Reply>(observation.what))
     return Source::kSystem;
   return Source::kGraph;
@@ -171,6 +174,11 @@ void TorturedRobot::receive(Observation observation) {
   auto& queue = on_the_way_[static_cast<std::size_t>(source_of(observation))];
   Time due = world_.now() + lateness.draw(random_);
   if (!queue.empty()) due = std::max(due, queue.back().due);
+  if (process != nullptr && process->state == ProcessState::kRunning) {
+    const StandIn& started = started_here_[component.index];
+    if (started.pid == process->pid)
+      queue.push_back({due, {now(), StartedHere{component, started.pid, started.launcher}}});
+  }
   queue.push_back({due, observation});
   if (random_.chance(noise_.duplication)) queue.push_back({due, std::move(observation)});
   if (is_launched)
@@ -208,8 +216,21 @@ void TorturedRobot::execute(const Command& command) {
   } else if (random_.chance(noise_.false_failure)) {
     denied_.push_back(command.id);
   }
-  if (std::holds_alternative<StartProcess>(command.what)) launcher_of_[command.component.index] = 0;
+  const std::size_t part = command.component.index;
+  const bool starts =
+      std::holds_alternative<StartProcess>(command.what) && process(part) == ProcessState::kGone;
   robots_.back()->execute(command);
+  if (!starts) return;
+  started_here_[part].pid = machines_[part]->pid();
+  started_here_[part].is_ending = false;
+  if (const int launcher = std::exchange(launcher_of_[part], 0); launcher != 0)
+    started_here_[part].launcher = launcher;
+}
+
+void TorturedRobot::end_stand_in(std::size_t part, int pid) {
+  StandIn& stand_in = started_here_[part];
+  if (stand_in.pid != pid || std::exchange(stand_in.is_ending, true)) return;
+  machines_[part]->terminate([] {});
 }
 
 void TorturedRobot::reply(const Command& command, Outcome outcome) {
@@ -270,9 +291,11 @@ void TorturedRobot::launch(std::size_t part) {
   if (process(part) != ProcessState::kGone) return;
   machines_[part]->launch();
   launched_[part] = world_.now();
+  started_here_[part] = {};
 }
 
-// One after the other, then their launcher; after `pause` they are started again.
+// One after the other, then their launcher; after `pause` all of the launch is started again, in the place of what
+// stands in for it, too.
 void TorturedRobot::end_launch(Duration pause) {
   const int launcher = *std::ranges::max_element(launcher_of_);
   if (launcher == 0) return;
@@ -298,9 +321,14 @@ void TorturedRobot::end_launch(Duration pause) {
   });
   world_.after(pause, [this, launcher] {
     for (std::size_t part = 0; part < machines_.size(); ++part) {
-      if (launcher_of_[part] != launcher || process(part) != ProcessState::kGone) continue;
-      launcher_of_[part] = launcher + 1;
-      launch(part);
+      const bool has_stand_in = launcher_of_[part] == 0 && started_here_[part].launcher == launcher;
+      const auto start = [this, part, launcher] {
+        if (process(part) != ProcessState::kGone) return;
+        launcher_of_[part] = launcher + 1;
+        launch(part);
+      };
+      if (has_stand_in) machines_[part]->terminate(start);
+      if (launcher_of_[part] == launcher) start();
     }
   });
 }

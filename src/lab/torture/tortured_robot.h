@@ -39,6 +39,8 @@ class TorturedRobot : public Robot {
   // A manager that begins anew receives the current state as by discovery, and which processes
   // known in the `past` have exited (process/supervisor.h, adopt_again()).
   void rediscover(const History& past);
+  // culprit ends this process, which it had started in the place of one of a launch that has ended.
+  void end_stand_in(std::size_t part, int pid);
   // From now on nothing is lost, late or wrong.
   void end_noise() { noise_ = {}; }
 
@@ -101,6 +103,13 @@ class TorturedRobot : public Robot {
   // launch is being ended, until that is over.
   static constexpr int kFirstLauncher = 7000;
   std::vector<int> launcher_of_;
+  // By part: the process that culprit started last, and the launch that it stands in for; 0: none.
+  struct StandIn {
+    int pid = 0;
+    int launcher = 0;
+    bool is_ending = false;
+  };
+  std::vector<StandIn> started_here_;
   std::vector<Time> left_;
 };
 

@@ -245,11 +245,9 @@ void ReasonsToWait::exclude_for(WeighedCandidate& weighed, std::size_t cause) co
   if (node.is_rule()) obstacle.because = node.rule;
   if (node.is_rule() && !has_fired) obstacle.condition = Condition::kSuspect;
   exclude(weighed, obstacle);
-  if (node.kind == CauseNode::Kind::kTrouble) {
-    weighed.candidate.remark = to_string(node.trouble);
-    if (is_about_hang(causes_[weighed.failure].rule, knowledge_))
-      ends(weighed, diagnosis_.may_wait_until(weighed.failure));
-  }
+  if (node.kind == CauseNode::Kind::kTrouble) weighed.candidate.remark = to_string(node.trouble);
+  if (is_about_hang(causes_[weighed.failure].rule, knowledge_))
+    ends(weighed, diagnosis_.may_wait_until(weighed.failure));
   if (node.kind == CauseNode::Kind::kUnsupplied)
     weighed.candidate.remark = "needs " + node.channel + ", which no node offers";
 }
