@@ -336,6 +336,10 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
       reception_.filter->note_refused("a datagram has thousands of submessages");
       return false;
     }
+    if (has_too_many_speakers(datagram.bytes)) {
+      reception_.filter->note_refused("a datagram speaks for many participants");
+      return false;
+    }
     if (!reception_.origins->counts(datagram.bytes, datagram.from, now)) return false;
     if (*reception_.relays) return true;
     if (!may_introduce(datagram, now)) return false;

@@ -96,6 +96,13 @@ bool has_too_many_submessages(std::span<const std::uint8_t> datagram) {
   return count > kMostSubmessages;
 }
 
+bool has_too_many_speakers(std::span<const std::uint8_t> datagram) {
+  if (!is_rtps(datagram)) return false;
+  int count = 0;
+  for_each_speaker(datagram, [&](const GuidPrefix&) { ++count; });
+  return count > kMostSpeakers;
+}
+
 bool introduces(std::span<const std::uint8_t> datagram) {
   bool does = false;
   for_each_submessage(datagram, [&](ByteView each) {
