@@ -88,6 +88,10 @@ Expected<std::vector<std::string>> words_of_item(const ConfigurationFile& file,
     return Error{file.place(item.name) + item.name + " is true or false, not '" + printable(value) +
                  "'"};
   }
+  // The default in place of a certificate, say, would be a surprise.
+  if (std::ranges::any_of(item.inputs, &std::string::empty) || item.inputs.empty())
+    return Error{file.place(item.name) + item.name +
+                 " is empty; write a value, or remove the line for the default"};
   try {
     option.add_result(item.inputs);
     option.run_callback();
@@ -121,9 +125,6 @@ Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, 
     if (!is_known) return unknown_key(file, item.name, known);
     CLI::Option* option = run.get_option(item.name == kRulesKey ? "RULES" : "--" + item.name);
     if (option->count() > 0) continue;  // by the command line or the environment
-    // As --print-config writes an option that has no value.
-    const bool is_empty = item.inputs.size() == 1 && item.inputs.front().empty();
-    if (is_empty && !is_flag(*option)) continue;
     auto more = words_of_item(file, item, *option);
     if (!more) return more;
     words.insert(words.end(), more->begin(), more->end());
@@ -149,6 +150,12 @@ std::string toml_values(const std::vector<std::string>& values) {
   return "[" + list + "]";
 }
 
+std::string default_in_words(const CLI::Option& option) {
+  if (is_flag(option)) return " = false";
+  const std::string value = option.get_default_str();
+  return value.empty() ? " is not set" : " = " + toml_value(value);
+}
+
 // Every option with its value; a comment where it has its default.
 std::string as_toml(const CLI::App& run) {
   std::string out = "# The options of culprit run. Use it with: culprit run --config FILE\n";
@@ -161,8 +168,7 @@ std::string as_toml(const CLI::App& run) {
     if (option->count() > 0)
       out += key + " = " + (is_flag(*option) ? "true" : toml_values(option->results())) + "\n";
     else
-      out += "# " + key + " = " +
-             (is_flag(*option) ? "false" : toml_value(option->get_default_str())) + "\n";
+      out += "# " + key + default_in_words(*option) + "\n";
   }
   return out;
 }

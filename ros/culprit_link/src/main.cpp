@@ -34,7 +34,9 @@
 #include <rmw/rmw.h>
 #include <rmw/serialized_message.h>
 
+#include "culprit_link/own_drops.h"
 #include "culprit_link/protocol.h"
+#include "culprit_link/turn.h"
 #include "graph_reading.h"
 #include "ignore.h"
 #include "type_support.h"
@@ -50,8 +52,8 @@ constexpr std::size_t kMostAsked =
     1000;  // requests to a service of culprit that wait for its answer
 constexpr std::size_t kMostRequests = 1000;  // of culprit to one service, that wait for theirs
 constexpr std::size_t kRestOfFrame = 1024;   // an upper limit for what is beside a payload
-// Messages of one endpoint in turn: the others' turn comes, too, and anybody may send without end.
-constexpr int kAtOnce = 100;
+constexpr std::size_t kMostWriters = 1000;   // of a topic, whose samples are counted
+constexpr auto kBetweenLooks = std::chrono::milliseconds(1);  // for dropped datagrams
 
 std::string last_error() {
   const std::string text = rcl_get_error_string().str;
@@ -103,6 +105,7 @@ class Channel {
 struct Subscription {
   rcl_subscription_t raw = rcl_get_zero_initialized_subscription();
   std::uint32_t most = kWhole;
+  std::map<Gid, std::uint64_t> last;  // number of each writer that counts its samples
 };
 
 struct Publisher {
@@ -381,16 +384,16 @@ class Helper {
   }
 
   void take_samples(std::uint32_t id, Subscription& from) {
-    for (int i = 0; i < kAtOnce; ++i) {
+    take_turn([&] {
       rcl_serialized_message_t message = rmw_get_zero_initialized_serialized_message();
-      if (rmw_serialized_message_init(&message, 0, &allocator_) != RMW_RET_OK)
-        return rcl_reset_error();
+      if (rmw_serialized_message_init(&message, 0, &allocator_) != RMW_RET_OK) return false;
       rmw_message_info_t info = rmw_get_zero_initialized_message_info();
       const rcl_ret_t taken = rcl_take_serialized_message(&from.raw, &message, &info, nullptr);
       if (taken == RCL_RET_OK) tell(id, from, message, info);
       ignore(rmw_serialized_message_fini(&message));
-      if (taken != RCL_RET_OK) return rcl_reset_error();
-    }
+      return taken == RCL_RET_OK;
+    });
+    rcl_reset_error();
   }
 
   void tell(std::uint32_t id, Subscription& from, const rcl_serialized_message_t& message,
@@ -407,33 +410,54 @@ class Helper {
     const std::size_t most = std::min<std::size_t>(from.most, message.buffer_length);
     if (most + kRestOfFrame <= kLargestFrame)
       sample.payload.assign(message.buffer, message.buffer + most);
+    if (is_counted && follows_missing(from, sample)) tell_of_drops();
     channel_.put(sample);
   }
 
+  static bool follows_missing(Subscription& from, const Arrived& sample) {
+    if (from.last.size() >= kMostWriters) from.last.clear();
+    const auto number = static_cast<std::uint64_t>(sample.number);
+    const auto [last, is_first] = from.last.try_emplace(sample.writer, number);
+    const std::uint64_t step = number - std::exchange(last->second, number);
+    return !is_first && step > 1;
+  }
+
+  // Anybody may send samples with gaps, and each look takes time.
+  void tell_of_drops() {
+    const auto now = Clock::now();
+    if (now < looked_for_drops_ + kBetweenLooks) return;
+    looked_for_drops_ = now;
+    const std::uint64_t dropped = drops_.look();
+    if (dropped != std::exchange(told_of_drops_, dropped)) channel_.put(Dropped{dropped});
+  }
+
   void take_replies(std::uint32_t id, Client& from) {
-    for (int i = 0; i < kAtOnce; ++i) {
+    take_turn([&] {
       rmw_service_info_t header{};
       const auto response = from.response->make();
-      if (!response) return;
+      if (!response) return false;
       if (rcl_take_response_with_info(&from.raw, &header, response.get()) != RCL_RET_OK)
-        return rcl_reset_error();
+        return false;
       const auto number = from.numbers.extract(header.request_id.sequence_number);
       if (number)
         channel_.put(Reply{id, number.mapped(), from.response->serialize(response.get())});
-    }
+      return true;
+    });
+    rcl_reset_error();
   }
 
   void take_requests(std::uint32_t id, Service& from) {
-    for (int i = 0; i < kAtOnce; ++i) {
+    take_turn([&] {
       rmw_service_info_t header{};
       const auto request = from.request->make();
-      if (!request) return;
-      if (rcl_take_request_with_info(&from.raw, &header, request.get()) != RCL_RET_OK)
-        return rcl_reset_error();
+      if (!request) return false;
+      if (rcl_take_request_with_info(&from.raw, &header, request.get()) != RCL_RET_OK) return false;
       if (from.asked.size() >= kMostAsked) from.asked.erase(from.asked.begin());
       from.asked[++from.last] = header.request_id;
       channel_.put(Asked{id, from.last, from.request->serialize(request.get())});
-    }
+      return true;
+    });
+    rcl_reset_error();
   }
 
   void look_at_graph() {
@@ -442,6 +466,7 @@ class Helper {
         graph_is_due_ ? now >= read_graph_ + kBetweenGraphs : now >= read_graph_ + kGraphAnyway;
     if (!is_due) return;
     graph_is_due_ = false;
+    tell_of_drops();
     GraphSeen seen = read_graph(node_);
     read_graph_ = Clock::now();
     if (has_told_ && seen == told_) return;
@@ -487,6 +512,10 @@ class Helper {
   std::map<std::uint32_t, std::unique_ptr<Publisher>> publishers_;
   std::map<std::uint32_t, std::unique_ptr<Client>> clients_;
   std::map<std::uint32_t, std::unique_ptr<Service>> services_;
+
+  OwnDrops drops_;
+  std::uint64_t told_of_drops_ = 0;
+  Clock::time_point looked_for_drops_{};
 
   Clock::time_point read_graph_{};
   bool graph_is_due_ = true;

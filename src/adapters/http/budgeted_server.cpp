@@ -182,6 +182,17 @@ void hide_what_it_takes(httplib::Request& request) {
   if (gzip) request.set_header(kTakesGzip, "yes");
 }
 
+// The kernel resets a connection that is closed with unread bytes; its client would see an error of the network.
+void close_cleanly(int socket) {
+  constexpr int kMostPieces = 16;
+  shutdown(socket, SHUT_WR);
+  std::array<char, 4096> piece;
+  for (int i = 0; i < kMostPieces; ++i) {
+    if (recv(socket, piece.data(), piece.size(), MSG_DONTWAIT) <= 0) break;
+  }
+  close(socket);
+}
+
 // Ours, or root's.
 bool is_of_own_user(int socket) {
   ucred peer{};
@@ -203,13 +214,12 @@ bool takes_gzip(const httplib::Request& request) { return request.has_header(kTa
 
 // A connection for which memory runs out ends; the others, and the server, go on.
 bool BudgetedServer::process_and_close_socket(socket_t socket) {
+  if (refuses_here) return close_cleanly(socket), false;
   bool is_well = false;
-  if (!refuses_here) {
-    try {
-      is_well = serve(socket);
-    } catch (const std::exception&) {
-      is_well = false;
-    }
+  try {
+    is_well = serve(socket);
+  } catch (const std::exception&) {
+    is_well = false;
   }
   shutdown(socket, SHUT_RDWR);
   close(socket);

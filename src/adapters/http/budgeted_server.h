@@ -37,7 +37,7 @@ struct ConnectionBudget {
 // The clients that are served. For a unix socket the kernel gives the user at its other end.
 enum class Clients : std::uint8_t { kAny, kOwnUser };
 
-// While one lives, BudgetedServers close each connection that they are to serve on this thread, unread.
+// While one lives, BudgetedServers close each connection that they are to serve on this thread, without an answer.
 class RefusesConnections {
  public:
   RefusesConnections();

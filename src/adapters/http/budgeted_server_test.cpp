@@ -2,7 +2,9 @@
 #include "http/budgeted_server.h"
 
 #include <arpa/inet.h>
+#include <atomic>
 #include <chrono>
+#include <future>
 #include <httplib.h>
 #include <memory>
 #include <string>
@@ -10,6 +12,7 @@
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -37,12 +40,17 @@ struct BusyServer : testing::Test {
     server.Post("/api/orders", [](const httplib::Request& q, httplib::Response& r) {
       r.set_content(q.body, "application/json");
     });
+    server.Get("/api/long", [this](const httplib::Request&, httplib::Response&) {
+      ++at_work;
+      released.wait();
+    });
     port = server.bind_to_any_port("127.0.0.1");
     server.let_wait(128);
     thread = std::thread([this] { server.listen_after_bind(); });
     while (!server.is_running()) std::this_thread::yield();
   }
   ~BusyServer() {
+    release();
     for (const int each : open) close(each);
     server.stop();
     thread.join();
@@ -59,6 +67,10 @@ struct BusyServer : testing::Test {
     EXPECT_GT(send(open.back(), request.data(), request.size(), MSG_NOSIGNAL), 0);
     return open.back();
   }
+  void release() {
+    if (std::exchange(is_released, true)) return;
+    goes_on.set_value();
+  }
   int status_of_state() const {
     httplib::Client client("127.0.0.1", port);
     client.set_read_timeout(60);
@@ -69,6 +81,10 @@ struct BusyServer : testing::Test {
   static constexpr std::chrono::hours kHour{1};
   BudgetedServer server{
       {.header = kHour, .request = kHour, .idle = kHour, .write = kHour}, Clients::kAny, nullptr};
+  std::promise<void> goes_on;
+  const std::shared_future<void> released = goes_on.get_future().share();
+  bool is_released = false;
+  std::atomic<std::size_t> at_work = 0;
   int port = 0;
   std::thread thread;
   std::vector<int> open;
@@ -101,6 +117,24 @@ TEST_F(BusyServer, TakesASlowOrderWithATokenBesideThem) {
   const ssize_t size = recv(owner, answer, sizeof answer, 0);
   ASSERT_GT(size, 0);
   EXPECT_EQ(std::string_view(answer, static_cast<std::size_t>(size)).substr(0, 12), "HTTP/1.1 200");
+}
+
+TEST_F(BusyServer, RefusesOthersInTimeWhileEachThreadIsAtWork) {
+  for (std::size_t i = 0; i < kThreads; ++i)
+    begin("GET /api/long HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  while (at_work < kThreads) std::this_thread::yield();
+  const auto began = std::chrono::steady_clock::now();
+  for (int i = 0; i < 20; ++i) {
+    const int refused = begin("GET /api/state HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    const timeval patience{20, 0};
+    setsockopt(refused, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    char byte = 0;
+    EXPECT_EQ(recv(refused, &byte, 1, 0), 0) << "it is closed, and no error";
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - began, 5 * ConnectionThreads::kPatience)
+      << "not each one waits";
+  release();
+  EXPECT_EQ(status_of_state(), 200);
 }
 
 }  // namespace

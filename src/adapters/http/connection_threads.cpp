@@ -12,6 +12,8 @@ namespace culprit::web {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 // A node that is started again has threads, too: readers of a page must not take their room.
 bool leaves_room_for_nodes() {
   constexpr std::size_t kThreads = 64;
@@ -32,8 +34,12 @@ void ConnectionThreads::enqueue(std::function<void()> connection) {
   const auto has_turn = [&]() CULPRIT_REQUIRES(mutex_) {
     return is_ending_ || waiting_.size() < idle_;
   };
+  const auto came = Clock::now();
   while (!has_turn() && !grows()) {
-    if (!end_one_() && threads_.size() < most_) {  // the system gives no thread
+    if (!busy_since_) busy_since_ = came;
+    const bool has_waited = Clock::now() >= std::max(*busy_since_ + kPatience, came + kLooks) ||
+                            threads_.size() < most_;  // the system gives no thread
+    if (!end_one_() && has_waited) {
       lock.unlock();
       const RefusesConnections refuses;
       return connection();
@@ -62,6 +68,7 @@ void ConnectionThreads::serve() {
   MutexLock lock(mutex_);
   while (true) {
     ++idle_;
+    busy_since_.reset();
     something_changed_.notify_all();  // somebody may wait for an idle thread
     something_changed_.wait(
         lock, [&]() CULPRIT_REQUIRES(mutex_) { return is_ending_ || !waiting_.empty(); });

@@ -545,22 +545,21 @@ void Link::prove_listening(Time until) {
   if (options_.participant.servers.empty()) listening_->seek(until);
 }
 
-// Once for each tenfold: a flood of them is not to be a flood of messages.
 void Link::tell_of_refused() {
   const DatagramFilter::Refused refused = context_->participant().refused();
-  if (refused.count == 0 || refused.count < 10 * refused_) return;
-  refused_ = refused.count;
-  inbox_.put(LinkTrouble{std::to_string(refused.count) + " datagrams were kept out so far: " +
-                         refused.why + "; which program on this network sends them?"});
+  if (!refused_.is_due(refused.count)) return;
+  inbox_.put(LinkTrouble{
+      (refused.count == 1 ? "1 datagram was" : std::to_string(refused.count) + " datagrams were") +
+      std::string(" kept out so far: ") + refused.why +
+      "; which program on this network sends them?"});
 }
 
-// Likewise.
 void Link::tell_of_dropped() {
   const std::uint64_t dropped = context_->participant().dropped_here();
-  if (dropped == 0 || dropped < 10 * dropped_) return;
-  dropped_ = dropped;
+  if (!dropped_.is_due(dropped)) return;
+  const std::string whose = options_.participant.helper ? "the helper program's" : "culprit's own";
   inbox_.put(
-      LinkTrouble{"culprit's own sockets were full and dropped " + std::to_string(dropped) +
+      LinkTrouble{whose + " sockets were full and dropped " + std::to_string(dropped) +
                   " datagrams so far; loss() is unknown while they may be what is missing. Raise "
                   "net.core.rmem_max, or find the program that floods the network"});
 }

@@ -36,6 +36,7 @@
 #include "link/process_usage.h"
 #include "link/robot_time.h"
 #include "link/starvation.h"
+#include "link/tenfold.h"
 #include "link/topic_watch.h"
 #include "link/type_finder.h"
 #include "robot/command.h"
@@ -206,8 +207,8 @@ class Link {
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;
   std::unique_ptr<Hearing> hearing_;
-  std::uint64_t refused_ = 0;  // datagrams that were reported
-  std::uint64_t dropped_ = 0;  // likewise, by our own full sockets
+  Tenfold refused_{1};    // datagrams; a robot sends none of them
+  Tenfold dropped_{100};  // by our own full sockets; a burst of announcements may cost a few
   std::unique_ptr<LeaseLink> lease_;
   std::unique_ptr<ComponentHosts> hosts_;
   Time looked_at_hosts_ = kLongAgo;  // on the executor's thread

@@ -1,6 +1,7 @@
 #include "link/log_watch.h"
 
 #include <algorithm>
+#include <deque>
 #include <utility>
 
 #include "base/live_clock.h"
@@ -51,22 +52,21 @@ void LogWatch::on_sample(const Sample& sample) {
   const LogLevel level = log_level(line->level);
   if (level < least_) return;
   const MutexLock lock(mutex_);
-  if (waiting_.size() >= kMostWaiting) waiting_.pop_front();
-  waiting_.push_back({writer, level, live_now()});
+  waiting_.add({writer, level, live_now()});
   if (std::exchange(is_posted_, true)) return;
   tasks_.post([this] { look_up(); });
 }
 
 void LogWatch::look_up() {
-  std::deque<Line> lines;
+  std::deque<WaitingLines::Line> lines;
   {
     const MutexLock lock(mutex_);
-    lines = std::exchange(waiting_, {});
+    lines = waiting_.take();
     is_posted_ = false;
   }
   const Time now = live_now();
-  std::deque<Line> unclaimed;
-  for (const Line& line : lines) {
+  std::deque<WaitingLines::Line> unclaimed;
+  for (const WaitingLines::Line& line : lines) {
     const Graph::Owner owner = self_.context().graph().owner_of(line.writer);
     if (owner.node.empty()) {
       if (now < later(line.at, kClaimed)) unclaimed.push_back(line);
@@ -78,7 +78,7 @@ void LogWatch::look_up() {
   }
   if (unclaimed.empty()) return;
   const MutexLock lock(mutex_);
-  waiting_.insert(waiting_.begin(), unclaimed.begin(), unclaimed.end());
+  for (const WaitingLines::Line& line : unclaimed) waiting_.add(line);
   if (std::exchange(is_posted_, true)) return;
   tasks_.post_at(Executor::Clock::now() + kRetry, [this] { look_up(); });
 }

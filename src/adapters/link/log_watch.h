@@ -6,7 +6,6 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "base/mutex.h"
 #include "base/time.h"
 #include "language/rule_set.h"
+#include "link/waiting_lines.h"
 #include "robot/inbox.h"
 #include "ros2/subscription.h"
 
@@ -37,12 +37,6 @@ class LogWatch {
   static constexpr Duration kRetry = std::chrono::milliseconds(200);
   static constexpr std::size_t kMostWaiting = 1000;
 
-  struct Line {
-    Guid writer;
-    LogLevel level;
-    Time at;
-  };
-
   LogWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of);
   void on_sample(const Sample& sample);
   void look_up();
@@ -53,7 +47,7 @@ class LogWatch {
   const std::vector<std::optional<LogLevel>> wanted_;
   LogLevel least_ = LogLevel::kFatal;
   Mutex mutex_;  // receive threads take it: nothing of the middleware is called with it
-  std::deque<Line> waiting_ CULPRIT_GUARDED_BY(mutex_);
+  WaitingLines waiting_ CULPRIT_GUARDED_BY(mutex_){kMostWaiting};
   bool is_posted_ CULPRIT_GUARDED_BY(mutex_) = false;  // look_up()
   TaskGroup tasks_;                                    // outlives the one that posts to it
   std::unique_ptr<RawSubscription> subscription_;

@@ -1,5 +1,7 @@
 #include "link/parameter_watch.h"
 
+#include <optional>
+
 #include "base/live_clock.h"
 #include "base/name_grammar.h"
 #include "link/list_parameter.h"
@@ -9,30 +11,41 @@ namespace culprit::ros2 {
 Expected<void> ParameterWatch::start(NodeEntry& self) {
   // Best effort and deep: many nodes announce at once when a robot starts.
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 100};
-  auto subscription = RawSubscription::create(
-      self, "/parameter_events", msg::ParameterEvent::kType, kQos, PayloadUse::kWhole,
-      [this](const Sample& sample) {
-        constexpr std::size_t kMost = msg::ParameterEvent::kLargest;  // bytes that wait
-        const std::size_t size = sample.payload.size();
-        if (waiting_ + size > kMost) return;
-        auto event = decode<msg::ParameterEvent>(sample.payload);
-        if (!event) return;
-        waiting_ += size;
-        tasks_.post([this, size, event = std::move(*event), writer = sample.identity.writer] {
-          waiting_ -= size;
-          on_event(event, writer);
-        });
-      });
+  auto subscription = RawSubscription::create(self, "/parameter_events", msg::ParameterEvent::kType,
+                                              kQos, PayloadUse::kWhole,
+                                              [this](const Sample& sample) { on_sample(sample); });
   if (!subscription) return Error{subscription.error()};
   subscription_ = std::move(*subscription);
   return {};
 }
 
+void ParameterWatch::on_sample(const Sample& sample) {
+  const std::size_t size = sample.payload.size();
+  if (size > msg::ParameterEvent::kLargest) return;
+  const Guid& writer = sample.identity.writer;
+  auto room = WaitingLookups::Room::kNone;
+  {
+    const MutexLock lock(mutex_);
+    room = waiting_.admit(writer, size);
+  }
+  if (room == WaitingLookups::Room::kNone) return;
+  std::optional<msg::ParameterEvent> event;
+  if (room == WaitingLookups::Room::kMessage) event = decode<msg::ParameterEvent>(sample.payload);
+  tasks_.post([this, size, room, writer, event = std::move(event)] {
+    {
+      const MutexLock lock(mutex_);
+      waiting_.done(writer, size, room);
+    }
+    if (event) return on_event(*event, writer);
+    if (room == WaitingLookups::Room::kWriterOnly) on_lost_event(writer);
+  });
+}
+
 void ParameterWatch::on_event(const msg::ParameterEvent& event, const Guid& writer) {
-  const auto component = binding_.bind(event.node);
+  const auto component = binding_.find(event.node);
   if (!component || others_.has(*component, event.node)) return;
   const Graph::Owner owner = context_.graph().owner_of(writer);
-  if (owner.node != event.node || !owner.counts) return ask(*component, event.node, owner.node);
+  if (owner.node != event.node || !owner.counts) return doubt(*component, event.node, owner.node);
   for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
     for (const msg::Parameter& changed : *changes) {
       for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
@@ -45,17 +58,35 @@ void ParameterWatch::on_event(const msg::ParameterEvent& event, const Guid& writ
   }
 }
 
-void ParameterWatch::ask(ComponentId component, const std::string& node, const std::string& by) {
-  constexpr Duration kPause = std::chrono::seconds(1);
+void ParameterWatch::on_lost_event(const Guid& writer) {
+  const Graph::Owner owner = context_.graph().owner_of(writer);
+  const auto component = binding_.find(owner.node);
+  if (component && owner.counts && !others_.has(*component, owner.node)) ask(*component);
+}
+
+void ParameterWatch::doubt(ComponentId component, const std::string& node, const std::string& by) {
   constexpr std::size_t kMost = 100;
-  const Time now = live_now();
-  Time& asked = asked_.try_emplace(component, kLongAgo).first->second;
-  if (now < later(asked, kPause)) return;
-  asked = now;
-  ask_(component);
+  ask(component);
   if (by.empty() || told_of_.size() >= kMost || !told_of_.emplace(node, by).second) return;
   inbox_.put(LinkTrouble{printable(by) + " published that parameters of " + node +
                          " changed; culprit believes only what that node answers"});
+}
+
+// At most once a second, and once more after the last event.
+void ParameterWatch::ask(ComponentId component) {
+  constexpr Duration kPause = std::chrono::seconds(1);
+  const Time now = live_now();
+  Asked& asked = asked_[component];
+  if (now < later(asked.last, kPause)) {
+    if (!std::exchange(asked.is_due, true))
+      tasks_.post_at(Executor::Clock::now() + kPause, [this, component] {
+        asked_[component].is_due = false;
+        ask(component);
+      });
+    return;
+  }
+  asked.last = now;
+  ask_(component);
 }
 
 }  // namespace culprit::ros2

@@ -1,10 +1,10 @@
 // Reads /parameter_events for the parameters that the rules name.
 //
 // An event counts only from a writer of the node itself. One from another writer, or from one that is
-// not known as the node's yet, is a reason to ask the node.
+// not known as the node's yet, is a reason to ask the node. So is one that has no room among those that wait: somebody
+// else may have sent all the others.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
@@ -13,8 +13,10 @@
 #include <utility>
 
 #include "base/expected.h"
+#include "base/mutex.h"
 #include "language/rule_set.h"
 #include "link/other_nodes.h"
+#include "link/waiting_lookups.h"
 #include "robot/component_binding.h"
 #include "robot/inbox.h"
 #include "ros2/context.h"
@@ -30,7 +32,7 @@ class ParameterWatch {
 
   // All outlive it.
   ParameterWatch(const Context& context, Executor& executor, const RuleSet& rules, Inbox& inbox,
-                 ComponentBinding& binding, const OtherNodes& others, Ask ask)
+                 const ComponentBinding& binding, const OtherNodes& others, Ask ask)
       : context_(context),
         rules_(rules),
         inbox_(inbox),
@@ -43,17 +45,25 @@ class ParameterWatch {
   Expected<void> start(NodeEntry& self);
 
  private:
+  void on_sample(const Sample& sample);
   void on_event(const msg::ParameterEvent& event, const Guid& writer);
-  void ask(ComponentId component, const std::string& node, const std::string& by);
+  void on_lost_event(const Guid& writer);
+  void doubt(ComponentId component, const std::string& node, const std::string& by);
+  void ask(ComponentId component);
 
   const Context& context_;
   const RuleSet& rules_;
   Inbox& inbox_;
-  ComponentBinding& binding_;
+  const ComponentBinding& binding_;
   const OtherNodes& others_;
   const Ask ask_;
-  std::atomic<std::size_t> waiting_ = 0;                   // bytes of events
-  std::map<ComponentId, Time> asked_;                      // because of somebody else's event
+  Mutex mutex_;
+  WaitingLookups waiting_ CULPRIT_GUARDED_BY(mutex_){msg::ParameterEvent::kLargest};
+  struct Asked {
+    Time last = kLongAgo;
+    bool is_due = false;  // once more, at the end of the pause
+  };
+  std::map<ComponentId, Asked> asked_;  // because of an event that does not count
   std::set<std::pair<std::string, std::string>> told_of_;  // nodes, and the sources in their names
   TaskGroup tasks_;
   std::unique_ptr<RawSubscription> subscription_;

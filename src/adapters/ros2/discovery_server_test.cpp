@@ -30,7 +30,9 @@ class Server {
     setenv("ROS_DISCOVERY_SERVER", (";127.0.0.1:" + std::to_string(port_)).c_str(), 1);
   }
   ~Server() {
-    unsetenv("ROS_DISCOVERY_SERVER");
+    // Fast DDS remembers the last value of a variable that is not set any more: later participants of this process would
+    // still ask the server (2.9, ros_discovery_server_env()).
+    setenv("ROS_DISCOVERY_SERVER", "", 1);
     fast_dds::dds::DomainParticipantFactory::get_instance()->delete_participant(server_);
   }
   Server(const Server&) = delete;

@@ -10,6 +10,8 @@ namespace culprit::ros2 {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kParticipantEntity = {0, 0, 1, 0xc1};
+constexpr std::array<std::uint8_t, 2> kFastDds = {
+    1, 15};  // a GUID of it begins so (RTPS 2.3 §9.3.1.5)
 constexpr std::uint8_t kReaderKind = 0x04;
 constexpr std::uint8_t kWriterKind = 0x03;
 
@@ -272,7 +274,10 @@ std::vector<HelperGraph::Change> HelperGraph::take(const SeenGraph& seen, Missin
 }
 
 std::string HelperGraph::source_of(const ParticipantInfo& participant) {
-  return participant.host == host_name() ? "" : participant.host;
+  if (participant.host.empty() || participant.host == host_name()) return "";
+  const GuidPrefix prefix = participant.guid.prefix();
+  if (!std::equal(kFastDds.begin(), kFastDds.end(), prefix.bytes.begin())) return "another vendor";
+  return "computer " + std::to_string(prefix.bytes[2] << 8 | prefix.bytes[3]);
 }
 
 std::vector<DiscoveryInfo> HelperGraph::infos() const {

@@ -36,8 +36,10 @@ class HelperGraph {
   // `middleware`: "rmw_fastrtps_cpp". `own`: the id of an endpoint of the helper.
   void begin(const std::string& middleware, const culprit_link::Gid& own, std::string own_node);
 
-  // The source (Graph::SourceOf) of a participant: this machine, or all other computers together, since a middleware shows
-  // no addresses.
+  // The source (Graph::SourceOf) of a participant. On Fast DDS its computer, which its GUID names: anybody may name
+  // another one, but all strangers together have no more than half of the room. Participants of another vendor count as
+  // one source, for no part of their GUIDs is common to a computer. A helper on another middleware than Fast DDS does not
+  // know which are of this machine: there all are taken to be.
   static std::string source_of(const ParticipantInfo& participant);
 
   // Returns the changes since the last graph, in an order that discovery could have had.

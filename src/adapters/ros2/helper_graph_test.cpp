@@ -95,12 +95,45 @@ TEST(HelperGraph, AThousandStrangersLeaveRoomForAComponent) {
   EXPECT_EQ(fed.graph.participants().size(), 21U);
 }
 
-TEST(HelperGraph, StrangersOfOtherComputersTakeAQuarterOfTheRoom) {
+Gid on_computer(std::uint8_t number, int pid) {
+  Gid gid = gid_of(pid, 1);
+  gid[2] = number;
+  return gid;
+}
+
+GraphSeen thousand_strangers_on(std::uint8_t computer) {
+  GraphSeen seen;
+  for (int i = 0; i < 1000; ++i)
+    seen.endpoints.push_back(
+        publisher("n" + std::to_string(i), "/light", on_computer(computer, i + 1)));
+  return seen;
+}
+
+TEST(HelperGraph, StrangersOfOneComputerTakeAQuarterOfTheRoomAndLeaveItToOthers) {
+  Fed fed;
+  GraphSeen seen = thousand_strangers_on(8);
+  fed.take(seen);
+  EXPECT_EQ(fed.graph.participants().size(), 5U);
+  fed.take_told();
+  seen.endpoints.push_back(publisher("lidar", "/scan", on_computer(9, 1)));
+  fed.take(seen);
+  EXPECT_EQ(fed.take_told(), (std::vector<std::string>{"+/lidar", "+/lidar/scan"}));
+}
+
+TEST(HelperGraph, AComponentElsewhereMakesNoOtherComputerKnown) {
+  Fed fed;
+  GraphSeen seen = thousand_strangers_on(8);
+  seen.endpoints.insert(seen.endpoints.begin(), publisher("camera", "/image", on_computer(6, 1)));
+  fed.take(seen);
+  EXPECT_EQ(fed.graph.participants().size(), 6U);
+}
+
+TEST(HelperGraph, StrangersOfAnotherVendorAreOneSource) {
   Fed fed;
   GraphSeen seen;
   for (int i = 0; i < 1000; ++i) {
-    Gid gid = gid_of(i + 1, 1);
-    gid[2] = 8;  // of its computer
+    Gid gid = on_computer(static_cast<std::uint8_t>(i), i + 1);
+    gid[1] = 16;  // Cyclone DDS
     seen.endpoints.push_back(publisher("n" + std::to_string(i), "/light", gid));
   }
   fed.take(seen);

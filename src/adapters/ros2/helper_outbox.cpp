@@ -3,47 +3,53 @@
 #include <cerrno>
 #include <sys/socket.h>
 #include <sys/types.h>
+#include <utility>
 
 namespace culprit::ros2 {
 namespace {
 
 namespace link = culprit_link;
 
+std::size_t kept_for(const link::Bytes& frame) { return sizeof frame + frame.capacity(); }
+
 }  // namespace
 
 void HelperOutbox::greet(const link::Frame& first) {
-  waiting_ = link::encode(first);
-  sent_ = 0;
-  is_up_ = false;
+  close();
+  waiting_.push_back(link::encode(first));
+  bytes_ = kept_for(waiting_.back());
   is_stuck_ = false;
 }
 
 void HelperOutbox::close() {
   is_up_ = false;
   waiting_.clear();
-  sent_ = 0;
+  sent_ = bytes_ = 0;
 }
 
 bool HelperOutbox::queue(const link::Frame& frame) {
   if (!is_up_ || is_stuck_) return false;
-  const link::Bytes bytes = link::encode(frame);
+  link::Bytes bytes = link::encode(frame);
   if (bytes.size() > link::kLargestFrame + link::kLengthSize) return true;
-  waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
-  is_stuck_ = waiting_.size() - sent_ > link::kLongestQueue;
+  bytes_ += kept_for(bytes);
+  waiting_.push_back(std::move(bytes));
+  is_stuck_ = bytes_ > link::kLongestQueue;
   return true;
 }
 
 bool HelperOutbox::send(int socket) {
-  while (sent_ < waiting_.size()) {
-    const ssize_t count =
-        ::send(socket, waiting_.data() + sent_, waiting_.size() - sent_, MSG_NOSIGNAL);
+  while (!waiting_.empty()) {
+    const link::Bytes& first = waiting_.front();
+    const ssize_t count = ::send(socket, first.data() + sent_, first.size() - sent_, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return true;
     if (count <= 0) return false;
     sent_ += static_cast<std::size_t>(count);
+    if (sent_ < first.size()) continue;
+    bytes_ -= kept_for(first);
+    waiting_.pop_front();
+    sent_ = 0;
   }
-  waiting_.clear();
-  sent_ = 0;
   return true;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 
 #include "culprit_link/protocol.h"
 
@@ -21,12 +22,15 @@ class HelperOutbox {
   bool send(int socket);
 
   bool has_waiting() const { return !waiting_.empty(); }
+  // Bytes that it keeps: of whole frames, though the first one may be sent in part.
+  std::size_t memory() const { return bytes_; }
   // The helper has left too much unread.
   bool is_stuck() const { return is_stuck_; }
 
  private:
-  culprit_link::Bytes waiting_;
-  std::size_t sent_ = 0;  // of waiting_
+  std::deque<culprit_link::Bytes> waiting_;  // frames
+  std::size_t sent_ = 0;                     // bytes, of the first one
+  std::size_t bytes_ = 0;
   bool is_up_ = false;
   bool is_stuck_ = false;
 };

@@ -111,7 +111,7 @@ class Helped final : public Participant::Impl {
   void look_at_receivers(Time) override {}
   Time receivers_attended() const override { return kNever; }
   DatagramFilter::Refused refused() const override { return {}; }
-  std::uint64_t dropped_here() const override { return 0; }
+  std::uint64_t dropped_here() const override { return dropped_; }
 
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options,
                                                   SampleCallback on_sample) override;
@@ -160,6 +160,7 @@ class Helped final : public Participant::Impl {
   // Until it ends. Gives why.
   std::string talk(HelperProcess& process) {
     reader_ = link::FrameReader();
+    dropped_by_helper_ = 0;
     begin_talk();
     const Time began = live_now();
     came_last_ = began;
@@ -367,6 +368,12 @@ class Helped final : public Participant::Impl {
     return "";
   }
 
+  std::string take(const link::Dropped& dropped) {
+    const std::uint64_t before = std::exchange(dropped_by_helper_, dropped.datagrams);
+    if (dropped.datagrams > before) dropped_ += dropped.datagrams - before;
+    return "";
+  }
+
   std::string take(const link::Trouble& trouble) {
     tell_once("the helper program: " + printable(trouble.text));
     return "";
@@ -492,12 +499,14 @@ class Helped final : public Participant::Impl {
   Origins origins_;
   std::atomic<bool> ends_ = false;
   std::atomic<bool> infos_are_due_ = false;
-  std::atomic<bool> rematches_ = false;  // an endpoint was added
+  std::atomic<bool> rematches_ = false;     // an endpoint was added
+  std::atomic<std::uint64_t> dropped_ = 0;  // datagrams, by all helpers so far
 
   // Of the thread.
   link::FrameReader reader_;
   HelperGraph graph_;
   std::optional<link::GraphSeen> last_graph_;  // of this helper
+  std::uint64_t dropped_by_helper_ = 0;        // datagrams, as this one reported last
   Time came_last_ = kLongAgo;
   Time asked_last_ = kLongAgo;
   Time joined_ = kLongAgo;

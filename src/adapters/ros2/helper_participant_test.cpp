@@ -18,6 +18,7 @@
 #include "ros2/live_test.h"
 #include "ros2/messages.h"
 #include "ros2/node.h"
+#include "ros2/sample_gaps.h"
 #include "ros2/services.h"
 
 namespace culprit::ros2 {
@@ -145,6 +146,31 @@ TEST(HelperParticipant, CallsServicesAndServes) {
              });
   ASSERT_TRUE(answers.wait_for_count(1));
   EXPECT_EQ(answers.all()[0], "paused");
+}
+
+TEST(HelperParticipant, KnowsThatItsHelperDroppedASampleBeforeTheNextOneComes) {
+  HelpedDomain robots;
+  HelpedManager manager(robots.helped({"--drops"}));
+  LiveContext robot(robots.domain.options());
+  const auto node = std::move(*Node::create(*robot, {"/", "robot"}));
+  auto light = std::move(*node->create_publisher<msg::Float64>("/light"));
+  SampleGaps gaps;
+  EventLog<SampleGaps::Step> steps;
+  const auto subscription = std::move(*RawSubscription::create(
+      manager.node, "/light", msg::Float64::kType, qos::kSensorData, PayloadUse::kWhole,
+      [&](const Sample& sample) {
+        steps.add(gaps.next(sample.identity.writer, sample.identity.sequence,
+                            manager.context->participant().dropped_here()));
+      }));
+  const Time end = later(live_now(), kPatience);
+  while (live_now() < end && steps.all().size() < 5) {
+    light.publish({1.5});
+    std::this_thread::sleep_for(20ms);
+  }
+  ASSERT_GE(steps.all().size(), 5U);
+  for (const SampleGaps::Step& step : steps.all())
+    EXPECT_EQ(step.lost_here, step.published > 1) << "each gap has one";
+  EXPECT_GT(steps.all().back().published, 1U);
 }
 
 TEST(HelperParticipant, SaysWhyThereIsNone) {

@@ -1,11 +1,16 @@
 #include <algorithm>
+#include <netinet/in.h>
 #include <span>
+#include <sys/socket.h>
+#include <unistd.h>
 #include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "culprit_link/own_drops.h"
 #include "culprit_link/protocol.h"
+#include "culprit_link/turn.h"
 
 namespace culprit_link {
 namespace {
@@ -31,7 +36,8 @@ std::vector<Frame> one_of_each() {
                     {{true, "/light", "a/msg/B", "RIHS01_x", {4}, node, quality}},
                     {{true, "/s", "a/srv/B", node}}},
           Refused{1, "no type"},
-          Trouble{"text"}};
+          Trouble{"text"},
+          Dropped{7}};
 }
 
 TEST(HelperProtocol, ReadsEveryFrameAsItWasWrittenHoweverItIsCut) {
@@ -79,6 +85,62 @@ TEST(HelperProtocol, FailsForGoodAtWhatIsNoFrame) {
     reader.feed(encode(Remove{4}));
     EXPECT_FALSE(reader.next());
   }
+}
+
+class UdpSocket {
+ public:
+  UdpSocket() {
+    const int room = 4096;
+    setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), size);
+    getsockname(descriptor_, reinterpret_cast<sockaddr*>(&address), &size);
+    connect(descriptor_, reinterpret_cast<const sockaddr*>(&address), size);  // to itself
+  }
+  ~UdpSocket() { close(descriptor_); }
+  UdpSocket(const UdpSocket&) = delete;
+
+  void send_to_itself(int datagrams) {
+    const Bytes bytes(1000);
+    for (int i = 0; i < datagrams; ++i) send(descriptor_, bytes.data(), bytes.size(), 0);
+  }
+
+ private:
+  const int descriptor_ = socket(AF_INET, SOCK_DGRAM, 0);
+};
+
+TEST(OwnDrops, AreThoseOfAllFullSocketsOfTheProcess) {
+  OwnDrops drops;
+  const std::uint64_t before = drops.look();
+  {
+    UdpSocket first;
+    UdpSocket second;
+    first.send_to_itself(1);
+    EXPECT_EQ(drops.look(), before) << "there is room";
+    first.send_to_itself(100);
+    const std::uint64_t of_first = drops.look();
+    EXPECT_GT(of_first, before + 50);
+    second.send_to_itself(100);
+    EXPECT_GT(drops.look(), of_first + 50);
+  }
+  const std::uint64_t all = drops.look();
+  UdpSocket third;
+  third.send_to_itself(100);
+  EXPECT_GT(drops.look(), all) << "with the number of a closed one";
+}
+
+TEST(Turn, OfAnEndpointWithoutEndLeavesOneToTheOthers) {
+  int flood = 0;
+  int left = 5;
+  for (int round = 0; round < 2; ++round) {
+    take_turn([&] { return ++flood > 0; });
+    take_turn([&] { return left-- > 0; });
+  }
+  EXPECT_EQ(flood, 2 * kInTurn);
+  EXPECT_EQ(left, -2) << "each round looks once more";
 }
 
 }  // namespace

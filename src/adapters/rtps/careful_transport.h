@@ -49,6 +49,7 @@
 #include "rtps/origins.h"
 #include "rtps/receive_thread.h"
 #include "rtps/speakers.h"
+#include "rtps/stuck_requests.h"
 #include "rtps/udp_sockets.h"
 
 namespace culprit::ros2::fast_dds {
@@ -68,6 +69,7 @@ struct Reception {
   std::shared_ptr<Origins> origins = std::make_shared<Origins>();
   std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
   std::shared_ptr<Newcomers> newcomers = std::make_shared<Newcomers>();
+  std::shared_ptr<StuckRequests> requests = std::make_shared<StuckRequests>();
   std::shared_ptr<ReceiveThread> thread = std::make_shared<ReceiveThread>();
   // Where readers that have time are sent to; 0: there is no such port.
   std::shared_ptr<std::atomic<std::uint16_t>> patient_port =
@@ -177,7 +179,8 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     if (wanted.size() > kAnnouncedTo) wanted = in_use(wanted);
     Locators first(wanted.cbegin());
     Locators last(wanted.cend());
-    return sender->send(bytes, size, &first, &last, timeout);
+    const Bytes mended = reception_.requests->mended({bytes, size});
+    return sender->send(mended.empty() ? bytes : mended.data(), size, &first, &last, timeout);
   }
 
   // The thread is our own: nothing comes this way.
@@ -334,6 +337,10 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     const Time now = live_now();
     if (has_too_many_submessages(datagram.bytes)) {
       reception_.filter->note_refused("a datagram has thousands of submessages");
+      return false;
+    }
+    if (has_too_many_speakers(datagram.bytes)) {
+      reception_.filter->note_refused("a datagram speaks for many participants");
       return false;
     }
     if (!reception_.origins->counts(datagram.bytes, datagram.from, now)) return false;

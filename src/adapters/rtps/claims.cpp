@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "rtps/announcement.h"
+#include "rtps/for_each_submessage.h"
 #include "rtps/speakers.h"
 #include "rtps/submessage.h"
 
@@ -21,11 +22,6 @@ constexpr std::array<Entity, 6> kAnnouncers = {
 constexpr std::size_t kToParameters = 6;  // the place of that offset
 constexpr std::size_t kWriter = 12;
 constexpr std::size_t kLeast = 24;  // bytes of a sample with its header
-
-std::uint16_t number_at(ByteView bytes, std::size_t at, bool is_little) {
-  return static_cast<std::uint16_t>(is_little ? bytes[at] | bytes[at + 1] << 8
-                                              : bytes[at] << 8 | bytes[at + 1]);
-}
 
 // The size of a list with its end marker, or of all bytes if it has none.
 std::size_t size_of_list(ByteView bytes, bool is_little) {
@@ -61,20 +57,6 @@ void add_keys(ByteView sample, const GuidPrefix& sender, std::vector<GuidPrefix>
   }
 }
 
-// Calls `found` with each submessage, its header included. Stops at the first damaged one.
-template <class Found>
-void for_each_submessage(ByteView datagram, Found found) {
-  if (!is_rtps(datagram)) return;
-  for (ByteView rest = datagram.subspan(rtps::kHeader); rest.size() >= rtps::kSubmessageHeader;) {
-    const std::size_t length = number_at(rest, 2, (rest[1] & 1) != 0);
-    const bool is_last = length == 0 && rest[0] != rtps::kPad && rest[0] != rtps::kInfoTime;
-    const std::size_t size = is_last ? rest.size() : rtps::kSubmessageHeader + length;
-    if (size > rest.size()) return;
-    found(rest.first(size));
-    rest = rest.subspan(std::min(rest.size(), (size + 3) & ~std::size_t{3}));
-  }
-}
-
 }  // namespace
 
 std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram) {
@@ -94,6 +76,13 @@ bool has_too_many_submessages(std::span<const std::uint8_t> datagram) {
   int count = 0;
   for_each_submessage(datagram, [&](ByteView) { ++count; });
   return count > kMostSubmessages;
+}
+
+bool has_too_many_speakers(std::span<const std::uint8_t> datagram) {
+  if (!is_rtps(datagram)) return false;
+  int count = 0;
+  for_each_speaker(datagram, [&](const GuidPrefix&) { ++count; });
+  return count > kMostSpeakers;
 }
 
 bool introduces(std::span<const std::uint8_t> datagram) {

@@ -22,6 +22,11 @@ std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram)
 inline constexpr int kMostSubmessages = 1000;
 bool has_too_many_submessages(std::span<const std::uint8_t> datagram);
 
+// Whether it speaks for more participants than a datagram needs to: for each one, its origin is looked up. A relay
+// speaks for a few.
+inline constexpr int kMostSpeakers = 64;
+bool has_too_many_speakers(std::span<const std::uint8_t> datagram);
+
 // Whether it announces a participant.
 bool introduces(std::span<const std::uint8_t> datagram);
 

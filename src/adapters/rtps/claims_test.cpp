@@ -54,6 +54,20 @@ TEST(Claims, OfAThousandSubmessagesAreTooMany) {
   EXPECT_TRUE(has_too_many_submessages(many.submessage(0x01, 0, {}).bytes()));
 }
 
+// Behind an odd length, each byte may begin a submessage that names another source.
+TEST(Claims, OfMoreParticipantsThanARelayHasAreTooMany) {
+  const Bytes source = {0, 0, 0, 0, 2, 3, 1, 15, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  TestDatagram datagram(kSender);
+  for (int i = 1; i < kMostSpeakers; ++i) datagram.submessage(0x0c, 0, source);
+  EXPECT_FALSE(has_too_many_speakers(datagram.bytes()));
+  EXPECT_TRUE(has_too_many_speakers(datagram.submessage(0x0c, 0, source).bytes()));
+  Bytes odd = TestDatagram(kSender).bytes();
+  odd.insert(odd.end(), {0x01, 1, 1, 0, 0});
+  odd.resize(60'000, 0x0c);
+  EXPECT_TRUE(has_too_many_speakers(odd));
+  EXPECT_FALSE(has_too_many_speakers(Bytes(60'000, 0x0c))) << "it is no message";
+}
+
 TEST(Claims, AreWhatEndsAndWhatBegins) {
   const Guid other = guid(kOther, {0, 0, 5, 3});
   const Guid third = guid(kThird, {0, 0, 1, 0xc1});

@@ -1,6 +1,7 @@
 #include "rtps/datagram_filter.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <optional>
 
@@ -22,6 +23,18 @@ bool is_header(ByteView datagram) {
 }
 
 bool is_builtin(const Guid& writer) { return (writer.bytes[15] & 0xc0) == 0xc0; }
+// Whether Fast DDS has a reader for it (EntityId_t.hpp). The filter keeps no state of the others: anybody can make up millions.
+bool is_read_builtin(const Guid& writer) {
+  constexpr std::array<std::uint32_t, 13> kAll = {
+      0x000100c2, 0x000002c2, 0x000003c2, 0x000004c2,
+      0x000200c2,  // participants, topics, endpoints, liveliness
+      0xff0101c2, 0xff0003c2, 0xff0004c2, 0xff0200c2,  // the same, secured
+      0x000201c3, 0xff0202c3,                          // handshakes, keys
+      0x000300c3, 0x000301c3};                         // types
+  std::uint32_t entity = 0;
+  for (std::size_t i = 12; i < writer.bytes.size(); ++i) entity = entity << 8 | writer.bytes[i];
+  return std::ranges::find(kAll, entity) != kAll.end();
+}
 // True for a writer of a program, false for one of the middleware's own (RTPS 2.3 §9.3.1.2).
 bool is_of_user(const Guid& writer) { return (writer.bytes[15] & 0xc0) == 0; }
 
@@ -491,7 +504,7 @@ const char* DatagramFilter::reserve(const Guid& guid, std::int64_t sequence, con
     if (!keeps_all && !writer.assemblies.empty() && writer.assemblies.begin()->first > sequence)
       return nullptr;  // of an older sample, which the reader passes over
     const std::size_t reserved =
-        keeps_all ? writer.reserved + wanted.size : std::max(writer.reserved, wanted.size);
+        keeps_all ? writer.reserved + kept_for(wanted) : std::max(writer.reserved, wanted.size);
     if (reserved > of_one || total(guid) - writer.reserved + reserved > of_all) return kTooMuch;
     total(guid) += reserved - writer.reserved;
     writer.reserved = reserved;
@@ -552,7 +565,8 @@ const char* DatagramFilter::objection_to_gap(const Submessage& submessage, Clock
 // ---- what is known of writers
 
 bool DatagramFilter::is_heard(const Guid& writer) const {
-  return is_builtin(writer) ? participants_.contains(writer.prefix()) : readers_.contains(writer);
+  if (!is_builtin(writer)) return readers_.contains(writer);
+  return is_read_builtin(writer) && participants_.contains(writer.prefix());
 }
 
 bool DatagramFilter::is_reliable(const Guid& writer) const {
@@ -583,8 +597,8 @@ std::size_t& DatagramFilter::total(const Guid& writer) {
 
 void DatagramFilter::release(const Guid& guid, Writer& writer,
                              std::map<std::int64_t, Assembly>::iterator which) {
-  total(guid) -= which->second.size;
-  writer.reserved -= which->second.size;
+  total(guid) -= kept_for(which->second);
+  writer.reserved -= kept_for(which->second);
   writer.assemblies.erase(which);
 }
 
@@ -660,6 +674,11 @@ void DatagramFilter::forget(const GuidPrefix& participant) {
 bool DatagramFilter::knows(const GuidPrefix& participant) const {
   const MutexLock lock(mutex_);
   return participants_.contains(participant);
+}
+
+std::size_t DatagramFilter::known_writers() const {
+  const MutexLock lock(mutex_);
+  return writers_.size();
 }
 
 void DatagramFilter::note_refused(const char* why) {

@@ -133,6 +133,8 @@ class DatagramFilter {
   void know(const GuidPrefix& participant);
   void forget(const GuidPrefix& participant);
   bool knows(const GuidPrefix& participant) const;
+  // The number of writers whose last sequence number it keeps.
+  std::size_t known_writers() const;
 
   // Submessages and datagrams that were taken out so far, and why the last one was; empty: none.
   struct Refused {
@@ -150,6 +152,11 @@ class DatagramFilter {
     std::vector<bool> seen;  // by fragment; of reliable writers only
     std::size_t missing = 0;
   };
+  // Bytes that a reliable reader keeps for it: a sample of one byte needs a description, too.
+  static std::size_t kept_for(const Assembly& sample) {
+    constexpr std::size_t kDescription = 512;
+    return sample.size + kDescription;
+  }
   struct Writer {
     std::int64_t last = 0;  // written, as far as is known
     Clock::time_point heard;

@@ -26,7 +26,13 @@ Guid writer_of_kind(std::uint8_t kind, std::uint8_t participant = 1) {
   return guid;
 }
 const Guid kCamera = writer_of_kind(0x03);
-const Guid kDiscovery = writer_of_kind(0xc2);
+Guid builtin_writer(std::uint16_t number, std::uint8_t participant = 1) {
+  Guid guid = writer_of_kind(0xc2, participant);
+  guid.bytes[13] = static_cast<std::uint8_t>(number >> 8);
+  guid.bytes[14] = static_cast<std::uint8_t>(number);
+  return guid;
+}
+const Guid kDiscovery = builtin_writer(3);  // announces writers
 const Guid kService = writer_of_kind(0x03, 2);
 
 // One of ours.
@@ -157,11 +163,24 @@ TEST_F(Filter, WhatFragmentsTakeIsBounded) {
   EXPECT_EQ(came, DatagramFilter::kReliableOfOne / 1'000'000);
   EXPECT_TRUE(passes(from(kDiscovery).data(kDiscovery, came + 1))) << "it still passes";
   for (std::uint8_t participant = 3; participant < 200; ++participant) {
-    const Guid other = writer_of_kind(0xc2, participant);
+    const Guid other = builtin_writer(3, participant);
     filter.know(other.prefix());
     came += passes(from(other).fragment(other, 1, 1, 1000, 3'000'000)) ? 3 : 0;
   }
   EXPECT_LE(came, DatagramFilter::kReliableOfAll / 1'000'000);
+}
+
+TEST_F(Filter, ManySmallSamplesInFragmentsAreBounded) {
+  std::size_t came = 0;
+  for (std::int64_t number = 1; number <= 20'000; ++number)
+    came += passes(from(kService).fragment(kService, number, 1, 1, 2)) ? 1 : 0;
+  EXPECT_LE(came, DatagramFilter::kReliableOfOne / 512);
+}
+
+TEST_F(Filter, KeepsNothingOfWritersThatTheMiddlewareDoesNotRead) {
+  for (std::uint16_t number = 1; number <= 1000; ++number)
+    pass(from(kDiscovery).heartbeat(builtin_writer(number), 1, 5));
+  EXPECT_EQ(filter.known_writers(), 5U) << "participants, topics, writers, readers, liveliness";
 }
 
 TEST_F(Filter, WhatIsCompleteOrGivenUpIsFreeAgain) {

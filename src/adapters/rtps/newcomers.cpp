@@ -22,21 +22,34 @@ bool Newcomers::is_self(const GuidPrefix& participant) const {
 }
 
 bool Newcomers::admits(const UdpAddress& from, Time now) {
+  const bool is_elsewhere = from.ip[0] != 127;
   const MutexLock lock(mutex_);
-  auto known = until_.find(from);
-  if (known == until_.end()) {
-    if (until_.size() >= kMostSources && later(cleared_, kEach) <= now) {
-      std::erase_if(until_, [&](const auto& each) { return each.second <= now; });
-      cleared_ = now;
-    }
-    if (until_.size() >= kMostSources) return true;
-    known = until_.emplace(from, now).first;
-  }
-  Time& until = known->second;
-  until = std::max(until, now);
-  if (until > later(now, (kAtOnce - 1) * kEach)) return false;
-  until = later(until, kEach);
+  Time* const computer = is_elsewhere ? computers_.find({from.ip, 0}, now) : nullptr;
+  if (!computers_.has_room(computer, now)) return false;
+  Time* const socket = sockets_.find(from, now);
+  if (!sockets_.has_room(socket, now)) return false;
+  computers_.note(computer, now);
+  sockets_.note(socket, now);
   return true;
+}
+
+Time* Newcomers::Sources::find(const UdpAddress& source, Time now) {
+  const auto known = until_.find(source);
+  if (known != until_.end()) return &known->second;
+  if (until_.size() >= kMostSources && later(cleared_, each_) <= now) {
+    std::erase_if(until_, [&](const auto& each) { return each.second <= now; });
+    cleared_ = now;
+  }
+  if (until_.size() >= kMostSources) return nullptr;
+  return &until_.emplace(source, now).first->second;
+}
+
+bool Newcomers::Sources::has_room(const Time* until, Time now) const {
+  return until == nullptr || *until <= later(now, (at_once_ - 1) * each_);
+}
+
+void Newcomers::Sources::note(Time* until, Time now) const {
+  if (until != nullptr) *until = later(std::max(*until, now), each_);
 }
 
 }  // namespace culprit::ros2

@@ -122,7 +122,8 @@ class Parser {
     for (const Statement& each : statements()) keywords.push_back(each.keyword);
     keyword_ = head.span;
     const Statement* meant = known(report_unknown_line(
-        {source_, read_, keywords, rules_.is_in_rule(), is_unfinished_}, head, s));
+        {source_, read_, keywords, rules_.is_in_rule(), rules_.has_trigger(), is_unfinished_}, head,
+        s));
     is_unfinished_ = is_unfinished_ && meant == nullptr &&
                      is_unfinished(source_.text({head.span.begin, s.rest().end}));
     is_unknown_ = meant == nullptr;

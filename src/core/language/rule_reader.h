@@ -27,6 +27,7 @@ class RuleReader {
   // The rule ends here, as at an INCLUDE.
   void end_rule() { is_in_rule_ = false; }
   bool is_in_rule() const { return is_in_rule_; }
+  bool has_trigger() const { return is_in_rule_ && into_->rules.back().trigger; }  // that rule
 
   bool rule(Scanner& s);
   bool policies(Scanner& s);

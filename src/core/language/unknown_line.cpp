@@ -52,6 +52,13 @@ std::string_view place_of_number(std::string_view upper) {
   return "";
 }
 
+// A line with a condition alone.
+Remedy remedy_of_condition(const UnknownLine& line, const Token& head) {
+  if (line.has_trigger)
+    return {"a rule has one TRIGGER: write && or ||, and this condition, at the end of its line"};
+  return {"write TRIGGER in front of it", Edit{{head.span.begin, head.span.begin}, "TRIGGER "}};
+}
+
 // A line whose first character is no letter.
 std::optional<Remedy> remedy_of_symbol(const UnknownLine& line, const Token& head,
                                        std::string_view written) {
@@ -60,6 +67,7 @@ std::optional<Remedy> remedy_of_symbol(const UnknownLine& line, const Token& hea
   if (written == "<")
     return Remedy{"a rule file has no tags: a rule begins with RULE and its name"};
   if (written == "`") return Remedy{"remove the line: a rule file has no code fences"};
+  if (written == "!" && line.is_in_rule) return remedy_of_condition(line, head);
   constexpr std::string_view kOperators = "&& || & | < <= > >= == != + * / %";
   const bool is_operator =
       head.kind != Token::Kind::kIdentifier && kOperators.find(written) != std::string_view::npos;
@@ -82,7 +90,7 @@ Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner&
   const Span in_front{head.span.begin, head.span.begin};
   const bool is_call = second.is("(") && second.span.begin == head.span.end;
   if (is_call && near.empty() && find_function(head.text) != nullptr)
-    return {"write TRIGGER in front of it", Edit{in_front, "TRIGGER "}};
+    return remedy_of_condition(line, head);
   if (is_call && near.empty())
     return {
         "a rule file is no program: a component is COMPONENT camera NODE /camera LAUNCH \"...\""};
@@ -106,7 +114,7 @@ Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner&
   const bool is_condition = second.kind == Token::Kind::kSymbol &&
                             kComparisons.find(second.text) != std::string_view::npos;
   if (is_condition && line.is_in_rule && head.kind == Token::Kind::kIdentifier)
-    return {"write TRIGGER in front of it", Edit{in_front, "TRIGGER "}};
+    return remedy_of_condition(line, head);
   if (upper == "VERSION") return {"remove the line: a rule file has no version"};
   if (is_adaptation(second.text))
     return {

@@ -16,6 +16,7 @@ struct UnknownLine {
   LineReader& read;
   std::span<const std::string_view> keywords;  // with which statements begin
   bool is_in_rule;
+  bool has_trigger;          // that rule
   bool is_below_unfinished;  // the line above was reported, and may go on in this one
 };
 

@@ -23,7 +23,7 @@
 
 namespace culprit_link {
 
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 // Bytes of a frame, its length apart. A larger sample is sent without its payload.
 inline constexpr std::size_t kLargestFrame = std::size_t{16} << 20;
 // Bytes that may wait to be sent. Beyond, the helper drops samples; a peer that lets more of the rest wait is stuck.
@@ -243,9 +243,17 @@ struct Trouble {
   static void visit(auto& self, auto&& each) { each(self.text); }
 };
 
+// Datagrams that the helper's own full sockets dropped since it began. It comes before a sample that follows missing
+// ones, if the number has changed: those may be among them.
+struct Dropped {
+  std::uint64_t datagrams = 0;
+  bool operator==(const Dropped&) const = default;
+  static void visit(auto& self, auto&& each) { each(self.datagrams); }
+};
+
 using Frame =
     std::variant<Join, Subscribe, Advertise, Use, Offer, Remove, Publish, Request, Respond, Echo,
-                 Welcome, Arrived, Reply, Asked, GraphSeen, Refused, Trouble>;
+                 Welcome, Arrived, Reply, Asked, GraphSeen, Refused, Trouble, Dropped>;
 
 // ---- coding
 

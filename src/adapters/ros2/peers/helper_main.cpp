@@ -1,11 +1,14 @@
 // A helper program (docs/link-protocol.md) on our own DDS: so that tests can reach a robot as over --link ros where no
 // ROS 2 is installed.
 //
-//     ros2_peer_helper <domain> [--version <n>] [--oversized] [--mute] [--counts <file>] <socket>
+//     ros2_peer_helper <domain> [--version <n>] [--oversized] [--mute] [--counts <file>] [--drops]
+//         <socket>
 //
 // --version: it claims to speak that one. --oversized: after it has joined, it sends a frame that is too long. --mute:
-// it sends nothing after it has joined. --counts: it adds a line to the file for each request that it hands on.
+// it sends nothing after it has joined. --counts: it adds a line to the file for each request that it hands on. --drops:
+// it withholds every second sample, and reports that as a dropped datagram.
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
@@ -37,6 +40,7 @@ struct Manners {
   std::uint32_t version = link::kVersion;
   bool is_oversized = false;
   bool is_mute = false;
+  bool drops = false;
   std::string counts;
   int socket = 0;
 };
@@ -180,6 +184,8 @@ class Peer {
 
   void carry_out(const link::Subscribe& wanted) {
     const auto tell = [this, id = wanted.id, most = wanted.most](const Sample& sample) {
+      if (manners_.drops && sample.identity.sequence % 2 == 0)
+        return put(link::Dropped{++dropped_});
       const auto given = sample.payload.first(std::min<std::size_t>(most, sample.payload.size()));
       put(link::Arrived{id,
                         sample.identity.writer.bytes,
@@ -250,6 +256,7 @@ class Peer {
   std::map<std::uint32_t, Made> made_;
   std::map<std::int64_t, ServiceServer::Answer> asked_;
   std::int64_t last_asked_ = 0;
+  std::atomic<std::uint64_t> dropped_ = 0;
   bool is_graph_due_ = false;
   TaskGroup tasks_;
 };
@@ -272,6 +279,7 @@ int main(int argc, char** argv) {
     if (argument == "--counts") manners.counts = argv[++i];
     if (argument == "--oversized") manners.is_oversized = true;
     if (argument == "--mute") manners.is_mute = true;
+    if (argument == "--drops") manners.drops = true;
   }
   manners.socket = static_cast<int>(number_in(argv[argc - 1]));
   return Peer(manners).run();

@@ -1,0 +1,140 @@
+#include "link/parameter_watch.h"
+
+#include <chrono>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "base/live_clock.h"
+#include "language/checker.h"
+#include "ros2/live_test.h"
+#include "ros2/parameter_store.h"
+#include "ros2/publisher.h"
+#include "ros2/timer.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A component without a NODE: it is bound to the first node of its name that is seen.
+constexpr const char* kParameterRule = R"(
+COMPONENT robot
+RULE R
+  POLICIES ERROR REPORT
+  TRIGGER parameter(robot, gain) > 2
+)";
+
+// A participant with one node, which publishes events of any node.
+struct Speaker {
+  Speaker(const TestDomain& domain, const NodeName& name)
+      : context(domain.options()),
+        node(*context, name),
+        events(std::move(*RawPublisher::create(node, "/parameter_events",
+                                               msg::ParameterEvent::kType, qos::kDefault))) {}
+  void says(const std::string& of, const Value& value) {
+    msg::ParameterEvent event;
+    event.node = of;
+    event.changed_parameters = {{"gain", to_parameter_value(value)}};
+    events->publish(encode(event));
+  }
+  LiveContext context;
+  NodeEntry node;
+  std::unique_ptr<RawPublisher> events;
+};
+
+struct Watched {
+  explicit Watched(const TestDomain& domain) : context(domain.options()) {
+    EXPECT_TRUE(watch.start(node));
+  }
+  // As if its computer were busy, until the future is ready.
+  void hold(std::future<void> until) {
+    std::promise<void> holds;
+    tasks.post([&holds, wait = std::make_shared<std::future<void>>(std::move(until))] {
+      holds.set_value();
+      wait->wait();
+    });
+    holds.get_future().wait();
+  }
+
+  const RuleSet rules = *check(Source("test.rules", kParameterRule)).rules;
+  Inbox inbox;
+  ComponentBinding binding{rules};
+  LiveContext context;
+  NodeEntry node{*context, {"/", "culprit"}};
+  OtherNodes others{node, binding, inbox};
+  EventLog<ComponentId> asked;
+  ParameterWatch watch{
+      *context, context->executor(), rules, inbox, binding, others, [this](ComponentId component) {
+        asked.add(component);
+      }};
+  TaskGroup tasks{context->executor()};
+};
+
+TEST(ParameterWatch, AsksANodeWhoseEventHasNoRoomBesideAFlood) {
+  const TestDomain domain;
+  Watched watched(domain);
+  Speaker robot(domain, {"/", "robot"});
+  Speaker stranger(domain, {"/", "stranger"});
+  ASSERT_TRUE(watched.context.sees_node("/robot"));
+  watched.context.run([&] { ASSERT_TRUE(watched.binding.bind("/robot")); });
+  {
+    Timer lies(stranger.context->executor(), 20ms, [&] { stranger.says("/robot", Value(9.0)); });
+    ASSERT_TRUE(watched.asked.wait_for_count(1)) << "the stranger is received";
+  }
+  std::this_thread::sleep_for(1500ms);  // so that it may be asked again
+  const std::size_t before = watched.asked.all().size();
+
+  std::promise<void> goes_on;
+  watched.hold(goes_on.get_future());
+  // Until nothing of the last size fits, of which the robot's is, too.
+  const std::size_t large = 2 * msg::ParameterEvent::kLargest / 50'000;
+  for (const auto& [size, count] : std::map<std::size_t, std::size_t, std::greater<>>{
+           {50'000, large}, {1'000, 150}, {10, 100}}) {
+    for (std::size_t i = 0; i < count; ++i) {
+      stranger.says("/other", Value(std::string(size, 'x')));
+      std::this_thread::sleep_for(2ms);
+    }
+  }
+  for (int i = 0; i < 3; ++i) robot.says("/robot", Value(std::string(10, 'x')));
+  std::this_thread::sleep_for(100ms);
+  goes_on.set_value();
+  EXPECT_TRUE(watched.asked.wait_for_count(before + 1));
+}
+
+TEST(ParameterWatch, AsksOnceMoreAfterTheLastEventOfOthers) {
+  const TestDomain domain;
+  Watched watched(domain);
+  Speaker robot(domain, {"/", "robot"});
+  Speaker stranger(domain, {"/", "stranger"});
+  ASSERT_TRUE(watched.context.sees_node("/robot"));
+  watched.context.run([&] { ASSERT_TRUE(watched.binding.bind("/robot")); });
+  {
+    Timer lies(stranger.context->executor(), 20ms, [&] { stranger.says("/robot", Value(9.0)); });
+    ASSERT_TRUE(watched.asked.wait_for_count(1));
+    std::this_thread::sleep_for(200ms);
+  }
+  EXPECT_TRUE(watched.asked.wait_for_count(2));
+}
+
+TEST(ParameterWatch, BindsNoComponentToANodeThatSomebodyNames) {
+  const TestDomain domain;
+  Watched watched(domain);
+  Speaker stranger(domain, {"/", "stranger"});
+  Speaker robot(domain, {"/", "robot"});
+  ASSERT_TRUE(watched.context.sees_node("/robot"));
+  Timer lies(stranger.context->executor(), 20ms, [&] { stranger.says("/evil/robot", Value(9.0)); });
+  std::this_thread::sleep_for(500ms);
+  watched.context.run([&] {
+    EXPECT_TRUE(watched.binding.bind("/robot"));
+    EXPECT_EQ(watched.binding.node_of(ComponentId(0)), "/robot");
+  });
+}
+
+}  // namespace
+}  // namespace culprit::ros2

@@ -1,0 +1,33 @@
+// The submessages of an RTPS message (RTPS 2.3 §9.4.1).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "rtps/cdr.h"
+#include "rtps/speakers.h"
+#include "rtps/submessage.h"
+
+namespace culprit::ros2 {
+
+inline std::uint16_t number_at(ByteView bytes, std::size_t at, bool is_little) {
+  return static_cast<std::uint16_t>(is_little ? bytes[at] | bytes[at + 1] << 8
+                                              : bytes[at] << 8 | bytes[at + 1]);
+}
+
+// Calls `found` with each submessage, its header included. Stops at the first damaged one.
+template <class Found>
+void for_each_submessage(ByteView datagram, Found found) {
+  if (!is_rtps(datagram)) return;
+  for (ByteView rest = datagram.subspan(rtps::kHeader); rest.size() >= rtps::kSubmessageHeader;) {
+    const std::size_t length = number_at(rest, 2, (rest[1] & 1) != 0);
+    const bool is_last = length == 0 && rest[0] != rtps::kPad && rest[0] != rtps::kInfoTime;
+    const std::size_t size = is_last ? rest.size() : rtps::kSubmessageHeader + length;
+    if (size > rest.size()) return;
+    found(rest.first(size));
+    rest = rest.subspan(std::min(rest.size(), (size + 3) & ~std::size_t{3}));
+  }
+}
+
+}  // namespace culprit::ros2
