@@ -3,6 +3,7 @@
 #include <cstring>
 #include <ctime>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <unistd.h>
 
@@ -26,6 +27,8 @@
 #include "live/rule_file.h"
 #include "live/rule_trust.h"
 #include "live/run_journal.h"
+#include "live/setups.h"
+#include "owners/units.h"
 #include "ros2/options.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
@@ -151,6 +154,20 @@ Expected<void> repairs_by_itself(std::vector<std::string> manager) {
           option)};
   }
   return {};
+}
+
+// Components that their owners could not start now: a program that was removed, an engine that does not answer.
+std::map<std::string, std::string> owner_troubles(const RuleSet& rules) {
+  std::map<std::string, std::string> out;
+  for (const auto& each : live::launch_troubles(rules))
+    out.emplace(each.component, "its LAUNCH could not run: " + each.why);
+  for (const Component& each : rules.components) {
+    if (!each.has_owner() || !each.host().empty()) continue;
+    const auto could =
+        each.unit ? owners::could_manage(*each.unit) : owners::could_manage(*each.engine);
+    if (!could) out.emplace(each.name, could.error());
+  }
+  return out;
 }
 
 // Measures the comparisons of the file in the latest recorded run.
@@ -359,6 +376,7 @@ int run_drill(DrillOptions options) {
   const auto text = read_text(options.rules);
   if (!text) return fail(text.error());
   const RuleSet& rules = loaded->rules;
+  if (!monitors) options.plan.spared = owner_troubles(rules);
   const auto plan = drill::plan(rules, options.plan);
   if (!plan) return fail(plan.error(), kUsage);
   std::FILE* const remarks = remarks_of(options);

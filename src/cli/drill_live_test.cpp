@@ -96,6 +96,15 @@ TEST_F(Drill, WithoutAYesInjectsNothing) {
   EXPECT_THAT(program.output(), HasSubstr("nothing is injected: --yes agrees to the plan"));
 }
 
+TEST_F(Drill, LeavesAloneAComponentWhoseProgramIsGone) {
+  std::ofstream(rules, std::ios::app) << "COMPONENT lidar NODE /lidar LAUNCH \"no-such-program\"\n";
+  TestProgram program(world,
+                      {"culprit", "drill", rules, "--only", "lidar", "--state-dir", state()});
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_THAT(program.output(), HasSubstr("lidar is left alone: its LAUNCH could not run: "));
+  EXPECT_THAT(program.output(), HasSubstr("there is no fault to inject"));
+}
+
 TEST_F(Drill, ThatIsKilledLeavesNoProcessStoppedAndTheNextOneCanBegin) {
   TestProgram killed(world, drill({"--only", "depth", "--kinds", "hang", "--hang", "60"}));
   ASSERT_TRUE(killed.prints("injects hang depth", 60s)) << killed.output();
@@ -248,8 +257,8 @@ TEST_F(Drill, AFaultThatIsLeftAndCannotBeUndoneKeepsItFromInjecting) {
 TEST_F(Drill, AnAbortConditionThatTheFaultHidesEndsTheDrill) {
   std::ofstream(rules, std::ios::app)
       << "SIGNAL focus DIAGNOSTIC camera KEY autofocus_needed STALE 500ms\n";
-  TestProgram program(world, drill({"--only", "camera", "--kinds", "hang", "--times", "3",
-                                    "--abort", "focus"}));
+  TestProgram program(
+      world, drill({"--only", "camera", "--kinds", "hang", "--times", "3", "--abort", "focus"}));
   EXPECT_EQ(program.wait(90s), 1) << program.output();
   EXPECT_THAT(program.output(), HasSubstr("[1/3] hang camera: proves nothing, ABORT focus"));
   EXPECT_THAT(program.output(), HasSubstr("is unknown"));
