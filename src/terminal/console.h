@@ -37,8 +37,8 @@ void say(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) 
   say_text(stream, fmt::format(format, std::forward<Args>(args)...));
 }
 
-// What SIGHUP means: that the terminal is gone, which ends the program at once, or stops it as
-// SIGTERM does unless SIGHUP was ignored (nohup), or that it is to read its files anew.
+// What SIGHUP means. kEnds: the terminal is gone, and the program ends at once. kStops: it stops as
+// on SIGTERM, unless SIGHUP was ignored (nohup). kReloads: the program reads its files anew.
 enum class Hangup : std::uint8_t { kEnds, kStops, kReloads };
 
 // Waits for SIGINT and SIGTERM on a thread of its own and then calls `stop`, once. Blocks these

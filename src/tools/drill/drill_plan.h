@@ -2,8 +2,8 @@
 //
 // The plan is made before anything is asked of the robot, so that a person can read it first.
 //   - Each round has every fault once, in an order drawn from the seed; so a budget cuts all faults alike.
-//   - A component is broken only if culprit can start it again on this computer (an owner of the rules that would do it
-//     now), and never if the rules exclude it (DRILL lines).
+//   - A component is broken only if an owner on this computer could start it now, and never if the rules exclude it
+//     (DRILL lines).
 #pragma once
 
 #include <map>

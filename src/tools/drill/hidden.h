@@ -1,8 +1,8 @@
 // Dependencies that the graph of the robot does not show: a service, a shared port, a file.
 //
-// A component needs another one if it fell silent in every trial of one fault of that one, three trials at least, unless
-// that may be chance, or the component falls silent in most faults. The broken component was chosen at random, so nothing
-// else can be the cause.
+// A component needs another one if it fell silent in every trial of one fault of that one, in three trials at least. The drill
+// chooses at random which component to break, so nothing else is the cause. Silence that may be chance does not count, nor
+// does that of a component which falls silent in most faults.
 //
 //     hidden_dependencies(trials, paths)    // {{"planner", "map_writer", 5}}
 #pragma once
