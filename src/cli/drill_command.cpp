@@ -3,6 +3,7 @@
 #include <cstring>
 #include <ctime>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 #include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "cli/drill_session.h"
+#include "cli/run_configuration.h"
 #include "cli/unified_diff.h"
 #include "drill/drill_record.h"
 #include "drill/drill_report.h"
@@ -25,6 +27,8 @@
 #include "live/rule_file.h"
 #include "live/rule_trust.h"
 #include "live/run_journal.h"
+#include "live/setups.h"
+#include "owners/units.h"
 #include "ros2/options.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
@@ -135,6 +139,35 @@ std::vector<std::string> manager_arguments(const DrillOptions& options, const st
   if (options.launches) all.emplace_back("--launch");
   if (options.monitor_seconds > 0) all.emplace_back("--dry-run");
   return all;
+}
+
+// The environment and a file may have options of `culprit run`, too. Errors: the culprit would not repair by itself.
+Expected<void> repairs_by_itself(std::vector<std::string> manager) {
+  manager.emplace_back("--print-config");
+  const auto all = with_configuration(std::move(manager));
+  if (!all) return Error{all.error()};
+  for (const char* option : {"approve", "dry-run"}) {
+    if (all->printed.find(fmt::format("\n{} = true\n", option)) != std::string::npos)
+      return Error{fmt::format(
+          "the options of culprit run have {} = true, so nobody would repair the robot in time; "
+          "nothing is injected",
+          option)};
+  }
+  return {};
+}
+
+// Components that their owners could not start now: a program that was removed, an engine that does not answer.
+std::map<std::string, std::string> owner_troubles(const RuleSet& rules) {
+  std::map<std::string, std::string> out;
+  for (const auto& each : live::launch_troubles(rules))
+    out.emplace(each.component, "its LAUNCH could not run: " + each.why);
+  for (const Component& each : rules.components) {
+    if (!each.has_owner() || !each.host().empty()) continue;
+    const auto could =
+        each.unit ? owners::could_manage(*each.unit) : owners::could_manage(*each.engine);
+    if (!could) out.emplace(each.name, could.error());
+  }
+  return out;
 }
 
 // Measures the comparisons of the file in the latest recorded run.
@@ -332,13 +365,18 @@ int run_drill(DrillOptions options) {
   if (options.budget_seconds > 0) options.plan.budget = from_seconds(options.budget_seconds);
   if (auto trusted = live::trust_rules(options.rules); !trusted) return fail(trusted.error());
   if (auto may = may_be_written(options); !may) return fail(may.error());
+  const bool monitors = options.monitor_seconds > 0;
+  if (!monitors) {
+    auto repairs = repairs_by_itself(manager_arguments(options, options.rules, "journal"));
+    if (!repairs) return fail(repairs.error());
+  }
   const auto loaded =
       live::read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
   if (!loaded) return fail(loaded.error());
   const auto text = read_text(options.rules);
   if (!text) return fail(text.error());
   const RuleSet& rules = loaded->rules;
-  const bool monitors = options.monitor_seconds > 0;
+  if (!monitors) options.plan.spared = owner_troubles(rules);
   const auto plan = drill::plan(rules, options.plan);
   if (!plan) return fail(plan.error(), kUsage);
   std::FILE* const remarks = remarks_of(options);
@@ -358,11 +396,14 @@ int run_drill(DrillOptions options) {
   auto record = drill::DrillRecord::open(folder, head);
   if (!record) return fail(record.error());
   say(remarks, "The record is in {}; --record resumes it\n", folder.string());
-  StopSignals signals;
+  StopSignals signals(Hangup::kStops);
   std::string trouble;
   {
     auto session = begin_session(options, rules, *record, signals.stopped());
     if (!session) return fail(session.error());
+    if (const auto now = read_text(options.rules); !now || *now != *text)
+      return fail("'" + options.rules +
+                  "' was changed since the plan was shown; nothing is injected");
     if (monitors) {
       (*session)->watch(from_seconds(options.monitor_seconds));
     } else {

@@ -1,5 +1,6 @@
 #include "cli/drill_injector.h"
 
+#include <algorithm>
 #include <csignal>
 #include <future>
 #include <poll.h>
@@ -232,6 +233,12 @@ Expected<Injected> DrillInjector::prepare(const drill::Fault& fault, const std::
 }
 
 Expected<void> DrillInjector::inject(const Injected& fault, Duration lasts) {
+  auto done = inject_now(fault, lasts);
+  if (!done && !drill::acts_on_process(fault.fault.kind)) in_doubt_.push_back(fault);
+  return done;
+}
+
+Expected<void> DrillInjector::inject_now(const Injected& fault, Duration lasts) {
   switch (fault.fault.kind) {
     case FaultKind::kKill:
       if (const auto process = hold(fault.process);
@@ -255,8 +262,16 @@ Expected<void> DrillInjector::inject(const Injected& fault, Duration lasts) {
     case FaultKind::kRestart:
       if (auto down = node_.change(fault.node, kDeactivate); !down) return down;
       return node_.change(fault.node, kActivate);
-    case FaultKind::kSetParameter:
-      return node_.set_parameter(fault.node, fault.fault.parameter, fault.fault.value);
+    case FaultKind::kSetParameter: {
+      const std::string& name = fault.fault.parameter;
+      if (auto set = node_.set_parameter(fault.node, name, fault.fault.value); !set) return set;
+      // It is undone only while it has this value.
+      const auto now = node_.parameter(fault.node, name);
+      if (!now) return Error{now.error()};
+      if (*now == fault.fault.value) return {};
+      return Error{fault.node + " sets " + name + " to " + to_string(*now) + ", not to " +
+                   to_string(fault.fault.value)};
+    }
   }
   return {};
 }
@@ -296,23 +311,42 @@ Expected<bool> DrillInjector::undo(const Injected& fault) {
       return static_cast<bool>(process);
     }
     case FaultKind::kDeactivate:
-    case FaultKind::kRestart: {
-      const auto state = node_.lifecycle(fault.node);
-      if (!state) return Error{state.error()};
-      if (*state != "inactive") return false;
-      if (auto up = node_.change(fault.node, kActivate); !up) return Error{up.error()};
-      return true;
-    }
-    case FaultKind::kSetParameter: {
-      const auto value = node_.parameter(fault.node, fault.fault.parameter);
-      if (!value) return Error{value.error()};
-      if (*value != fault.fault.value || !fault.before) return false;
-      if (auto set = node_.set_parameter(fault.node, fault.fault.parameter, *fault.before); !set)
-        return Error{set.error()};
-      return true;
-    }
+    case FaultKind::kRestart:
+      return undo_lifecycle(fault);
+    case FaultKind::kSetParameter:
+      return undo_parameter(fault);
   }
   return false;
+}
+
+// A request in doubt is answered before the one that follows it here, which takes it back.
+Expected<bool> DrillInjector::undo_lifecycle(const Injected& fault) {
+  const bool is_in_doubt = std::ranges::find(in_doubt_, fault) != in_doubt_.end();
+  if (is_in_doubt) (void)node_.change(fault.node, kActivate);
+  const auto state = node_.lifecycle(fault.node);
+  if (!state) return Error{state.error()};
+  if (*state == "deactivating") return Error{fault.node + " is still deactivating"};
+  if (*state == "inactive") {
+    if (auto up = node_.change(fault.node, kActivate); !up) return Error{up.error()};
+  }
+  std::erase(in_doubt_, fault);
+  return *state == "inactive";
+}
+
+Expected<bool> DrillInjector::undo_parameter(const Injected& fault) {
+  const std::string& name = fault.fault.parameter;
+  if (!fault.before) return false;
+  const bool is_in_doubt = std::ranges::find(in_doubt_, fault) != in_doubt_.end();
+  if (is_in_doubt) (void)node_.set_parameter(fault.node, name, *fault.before);
+  const auto value = node_.parameter(fault.node, name);
+  if (!value) return Error{value.error()};
+  const bool is_there = is_in_doubt ? *value != *fault.before : *value == fault.fault.value;
+  if (is_there) {
+    if (auto set = node_.set_parameter(fault.node, name, *fault.before); !set)
+      return Error{set.error()};
+  }
+  std::erase(in_doubt_, fault);
+  return is_there;
 }
 
 }  // namespace culprit::cli

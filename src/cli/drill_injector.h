@@ -58,10 +58,15 @@ class DrillInjector {
   void release();
 
  private:
+  Expected<void> inject_now(const drill::Injected& fault, Duration lasts);
   Expected<void> stop_for(const drill::ProcessId& process, Duration lasts, bool in_rhythm);
+  Expected<bool> undo_lifecycle(const drill::Injected& fault);
+  Expected<bool> undo_parameter(const drill::Injected& fault);
 
   DrillNode& node_;
   std::vector<FaultGuard> guards_;
+  // Without an answer of its node. The node may obey later, so a look at its state proves nothing.
+  std::vector<drill::Injected> in_doubt_;
 };
 
 }  // namespace culprit::cli

@@ -12,6 +12,7 @@
 #include "base/environment.h"
 #include "base/live_clock.h"
 #include "base/text_file.h"
+#include "drill/injected.h"
 #include "json/json.h"
 #include "owners/proc.h"
 #include "terminal/test_program.h"
@@ -93,6 +94,15 @@ TEST_F(Drill, WithoutAYesInjectsNothing) {
   EXPECT_EQ(program.wait(), 1);
   EXPECT_THAT(program.output(), HasSubstr("10 faults in random order"));
   EXPECT_THAT(program.output(), HasSubstr("nothing is injected: --yes agrees to the plan"));
+}
+
+TEST_F(Drill, LeavesAloneAComponentWhoseProgramIsGone) {
+  std::ofstream(rules, std::ios::app) << "COMPONENT lidar NODE /lidar LAUNCH \"no-such-program\"\n";
+  TestProgram program(world,
+                      {"culprit", "drill", rules, "--only", "lidar", "--state-dir", state()});
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_THAT(program.output(), HasSubstr("lidar is left alone: its LAUNCH could not run: "));
+  EXPECT_THAT(program.output(), HasSubstr("there is no fault to inject"));
 }
 
 TEST_F(Drill, ThatIsKilledLeavesNoProcessStoppedAndTheNextOneCanBegin) {
@@ -194,6 +204,66 @@ TEST_F(Drill, InterruptedTwiceStillUndoesAndHeals) {
   EXPECT_EQ(program.wait(60s), 1) << program.output();
   EXPECT_THAT(program.output(), HasSubstr("the drill ends: interrupted"));
   EXPECT_FALSE(has_record_of_injected()) << "the robot was well at the end";
+}
+
+TEST_F(Drill, WhoseTerminalIsClosedUndoesAndHeals) {
+  TestProgram program(world, drill({"--only", "camera", "--kinds", "deactivate", "--times", "9"}));
+  ASSERT_TRUE(program.prints("injects", 60s)) << program.output();
+  program.signal(SIGHUP);
+  EXPECT_EQ(program.wait(60s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("the drill ends: interrupted"));
+  EXPECT_FALSE(has_record_of_injected());
+}
+
+TEST_F(Drill, ASecondOneOfTheSameRobotLeavesTheFirstAlone) {
+  TestProgram first(world, drill({"--only", "camera", "--kinds", "kill", "--times", "2"}));
+  ASSERT_TRUE(first.prints("injects", 60s)) << first.output();
+  TestProgram second(world, {"culprit", "drill", rules, "--yes", "--state-dir", state()});
+  EXPECT_EQ(second.wait(), 1) << second.output();
+  EXPECT_THAT(second.output(), HasSubstr("another drill of this robot runs"));
+  EXPECT_THAT(second.output(), testing::Not(HasSubstr("injects")));
+  EXPECT_EQ(first.wait(90s), 0) << first.output();
+  EXPECT_THAT(first.output(), HasSubstr("[2/2] kill camera: noticed"));
+}
+
+TEST_F(Drill, WhoseCulpritWouldAskAPersonFirstInjectsNothing) {
+  setenv("CULPRIT_APPROVE", "true", 1);
+  TestProgram program(world, drill({}));
+  EXPECT_EQ(program.wait(), 1) << program.output();
+  unsetenv("CULPRIT_APPROVE");
+  EXPECT_THAT(program.output(), HasSubstr("the options of culprit run have approve = true"));
+  EXPECT_THAT(managers(), testing::IsEmpty());
+}
+
+TEST_F(Drill, AFaultThatIsLeftAndCannotBeUndoneKeepsItFromInjecting) {
+  const auto path = std::filesystem::path(state()) /
+                    (environment("ROS_DOMAIN_ID") + std::string("-two_sensors.drill"));
+  std::filesystem::create_directories(path.parent_path());
+  const drill::Injected left{{drill::FaultKind::kSetParameter, "camera", "exposure", Value(0.0)},
+                             "/nowhere",
+                             {},
+                             Value(0.5)};
+  ASSERT_TRUE(drill::write_injected(path, {"", {}, {left}}));
+  TestProgram program(world, drill({"--kinds", "kill", "--patience", "8"}));
+  EXPECT_EQ(program.wait(90s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("left by an earlier drill, and cannot be undone: "
+                                          "set_parameter camera exposure 0"));
+  EXPECT_THAT(program.output(), testing::Not(HasSubstr("injects")));
+  const auto kept = drill::read_injected(path);
+  ASSERT_TRUE(kept && *kept) << "the next drill tries again";
+  EXPECT_EQ((*kept)->faults, std::vector{left});
+}
+
+TEST_F(Drill, AnAbortConditionThatTheFaultHidesEndsTheDrill) {
+  std::ofstream(rules, std::ios::app)
+      << "SIGNAL focus DIAGNOSTIC camera KEY autofocus_needed STALE 500ms\n";
+  TestProgram program(
+      world, drill({"--only", "camera", "--kinds", "hang", "--times", "3", "--abort", "focus"}));
+  EXPECT_EQ(program.wait(90s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("[1/3] hang camera: proves nothing, ABORT focus"));
+  EXPECT_THAT(program.output(), HasSubstr("is unknown"));
+  EXPECT_THAT(program.output(), testing::Not(HasSubstr("[2/3]")));
+  EXPECT_FALSE(has_record_of_injected());
 }
 
 TEST_F(Drill, EndsWhenCulpritIsPausedAndInjectsNothingMore) {

@@ -6,6 +6,7 @@
 #include "base/environment.h"
 #include "base/live_clock.h"
 #include "journal/json.h"
+#include "live/announcements.h"
 #include "owners/piped_program.h"
 #include "owners/proc.h"
 #include "owners/process_tree.h"
@@ -86,14 +87,31 @@ void DrillManager::follow() {
       if (kind == "graph") graph_ = std::move(document);
       if (kind == "state") state_ = std::move(document);
       if (kind == "control") control_ = std::move(document);
-      // After a break the events that are known come again.
-      if (kind == "event" && (events_.empty() || journal::number_of(document, "clock") >=
-                                                     journal::number_of(events_.back(), "clock")))
-        events_.push_back(std::move(document));
+      if (kind == "event") add_event(std::move(document));
       return !is_over_;
     });
     if (!is_over_) std::this_thread::sleep_for(50ms);
   }
+}
+
+void DrillManager::add_event(Json event) {
+  const std::string type = journal::text_of(event, "type");
+  if (type == "failure_detected") detected_.insert(journal::text_of(event, "rule"));
+  has_reloaded_ |= type == live::announcements::kReloaded.name;
+  // After a break the events that are known come again.
+  if (events_.empty() ||
+      journal::number_of(event, "clock") >= journal::number_of(events_.back(), "clock"))
+    events_.push_back(std::move(event));
+}
+
+bool DrillManager::has_detected(const std::string& rule) const {
+  const MutexLock lock(mutex_);
+  return detected_.contains(rule);
+}
+
+bool DrillManager::has_reloaded() const {
+  const MutexLock lock(mutex_);
+  return has_reloaded_;
 }
 
 bool DrillManager::is_running() const { return runs(process_); }

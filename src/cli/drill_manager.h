@@ -6,6 +6,7 @@
 #include <atomic>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include "base/mutex.h"
@@ -36,12 +37,16 @@ class DrillManager {
 
   // As it was told last.
   drill::RobotView view() const;
+  // Whether it ever detected a failure of this rule.
+  bool has_detected(const std::string& rule) const;
+  bool has_reloaded() const;
   // Events since that time on the clock, in seconds since 1970, oldest first.
   std::vector<Json> events_since(double clock) const;
 
  private:
   DrillManager(drill::ProcessId process, RunningCulprit culprit);
   void follow();
+  void add_event(Json event) CULPRIT_REQUIRES(mutex_);
 
   const drill::ProcessId process_;
   const RunningCulprit culprit_;
@@ -54,6 +59,8 @@ class DrillManager {
   Json state_ CULPRIT_GUARDED_BY(mutex_);
   Json control_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<Json> events_ CULPRIT_GUARDED_BY(mutex_);
+  std::set<std::string> detected_ CULPRIT_GUARDED_BY(mutex_);  // rules
+  bool has_reloaded_ CULPRIT_GUARDED_BY(mutex_) = false;
   Time told_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
 
   std::thread thread_;

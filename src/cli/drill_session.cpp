@@ -23,6 +23,7 @@ constexpr Duration kLook = 50ms;
 constexpr Duration kNotices = 5s;  // a rule that has not fired by then does not notice the fault
 constexpr Duration kStarved = 1s;  // a look that comes so late proves nothing
 constexpr Duration kHears = 3s;    // after that, until culprit must have been heard again
+constexpr const char* kNoAnswer = "the culprit of this drill does not answer";
 
 std::string boot_id() {
   const auto text = read_text("/proc/sys/kernel/random/boot_id");
@@ -62,6 +63,7 @@ bool is_noticed(const std::vector<Json>& events) {
 Expected<std::unique_ptr<DrillSession>> DrillSession::begin(Options options, Say say,
                                                             const std::atomic<bool>& stop) {
   std::unique_ptr<DrillSession> session(new DrillSession(std::move(options), std::move(say), stop));
+  if (auto locked = session->lock(); !locked) return Error{locked.error()};
   auto node = DrillNode::join();
   if (!node) return Error{node.error()};
   session->node_ = std::move(*node);
@@ -78,10 +80,22 @@ Expected<std::unique_ptr<DrillSession>> DrillSession::begin(Options options, Say
   session->manager_ = std::move(*manager);
   if (auto noted = session->note({}); !noted) return Error{"nothing is injected: " + noted.error()};
   if (auto well = session->wait_until_well(Until::kWellOrTold); !well) return Error{well.error()};
+  if (auto undone = session->undo_what_is_left_now(); !undone) return Error{undone.error()};
   session->healthy_ = session->manager_->view();
   session->usual_ =
       session->healthy_->healthy(session->node_->publishers_of(session->healthy_->topics()));
   return session;
+}
+
+Expected<void> DrillSession::lock() {
+  const std::string path = options_.injected.string() + "-lock";
+  std::error_code error;
+  std::filesystem::create_directories(options_.injected.parent_path(), error);
+  auto taken = journal::FileLock::take(path);
+  if (!taken) return Error{"cannot make '" + path + "': " + taken.error()};
+  if (!*taken) return Error{"another drill of this robot runs; nothing is injected"};
+  lock_ = std::move(*taken);
+  return {};
 }
 
 Expected<void> DrillSession::undo_what_is_left() {
@@ -94,30 +108,44 @@ Expected<void> DrillSession::undo_what_is_left() {
     if (drill::acts_on_process(each.fault.kind) && !is_same_boot) continue;
     const auto undone = injector_->undo(each);
     if (!undone)
-      say_("left by an earlier drill and not undone: " + to_string(each.fault) + ": " +
-           undone.error());
+      left_.push_back(each);
     else if (*undone)
       say_("undone, left by an earlier drill: " + to_string(each.fault));
   }
   return {};
 }
 
+Expected<void> DrillSession::undo_what_is_left_now() {
+  if (left_.empty()) return {};
+  undo_all(left_);
+  if (left_.empty()) return note({});
+  return Error{"left by an earlier drill, and cannot be undone: " + to_string(left_.front().fault) +
+               "; restore the healthy robot, then remove '" + options_.injected.string() + "'"};
+}
+
 Expected<void> DrillSession::note(std::vector<Injected> injected) const {
+  injected.insert(injected.end(), left_.begin(), left_.end());
   return drill::write_injected(options_.injected,
                                {boot_id(), manager_->process(), std::move(injected)});
 }
 
 DrillSession::~DrillSession() {
   if (!manager_ || (options_.heals && !heal())) return;
+  undo(left_);
   manager_.reset();
+  if (!left_.empty()) {
+    say_(to_string(left_.front().fault) + " is not undone; the next drill tries again");
+    return;
+  }
   if (auto forgotten = drill::forget_injected(options_.injected); !forgotten)
     say_(forgotten.error());
 }
 
 bool DrillSession::heal() {
-  if (!manager_->is_running()) {
+  if (is_culprit_lost()) {
     static const std::atomic<bool> kNeverStopped = false;
-    say_("the culprit of this drill exited; another one heals the robot");
+    say_("the culprit of this drill exited or hangs; another one heals the robot");
+    manager_.reset();
     auto next = DrillManager::start(options_.manager, options_.log, kNeverStopped);
     if (!next) {
       say_(next.error() + "; restore the healthy robot");
@@ -125,6 +153,7 @@ bool DrillSession::heal() {
     }
     manager_ = std::move(*next);
     calm_.reset();
+    (void)note({});  // on a full disk the next drill finds it by its socket, and says so
   }
   if (auto well = wait_until_well(Until::kWell); !well) {
     say_(well.error() + "; culprit goes on and heals it: process " +
@@ -138,14 +167,27 @@ bool DrillSession::heal() {
 std::string DrillSession::why_to_end() {
   if (stop_) return "interrupted";
   if (!aborted_.empty()) return aborted_;
-  // A drill that stood still heard nothing.
-  const bool may_hear = live_now() >= later(stood_still_, kHears);
-  if (!manager_->is_running() || (may_hear && !manager_->is_answering()))
-    return "the culprit of this drill does not answer";
+  if (is_culprit_lost()) return kNoAnswer;
   const RobotView view = manager_->view();
   for (const Condition& each : options_.aborts)
-    if (view.trigger(each.rule).value_or(false)) aborted_ = "ABORT " + each.text + " is true";
+    if (view.trigger(each.rule).value_or(false) || manager_->has_detected(each.rule))
+      aborted_ = "ABORT " + each.text + " is true";
+  if (manager_->has_reloaded()) aborted_ = "the rules were reloaded";
   return aborted_;
+}
+
+bool DrillSession::is_culprit_lost() const {
+  // A drill that stood still itself received nothing.
+  const bool may_hear = live_now() >= later(stood_still_, kHears);
+  return !manager_->is_running() || (may_hear && !manager_->is_answering());
+}
+
+std::string DrillSession::blind_abort() const {
+  const RobotView view = manager_->view();
+  for (const Condition& each : options_.aborts)
+    if (!view.trigger(each.rule))
+      return "ABORT " + each.text + " is unknown: a topic or node that it reads is not seen";
+  return "";
 }
 
 void DrillSession::next_look() {
@@ -160,6 +202,8 @@ Expected<void> DrillSession::wait_until_well(Until until) {
     if (const std::string why = why_to_end(); !why.empty() && until == Until::kWellOrTold)
       return Error{why};
     complaints = manager_->view().complaints(healthy_ ? &*healthy_ : nullptr);
+    // Its last word may be that all is well.
+    if (!manager_->is_answering()) complaints = {kNoAnswer};
     if (!complaints.empty()) calm_.reset();
     if (complaints.empty() && !calm_) calm_ = live_now();
     if (calm_ && live_now() - *calm_ >= drill::kCalm) return {};
@@ -174,10 +218,7 @@ Expected<void> DrillSession::may_inject() const {
   for (const Condition& each : options_.interlocks)
     if (view.trigger(each.rule).value_or(true))
       return Error{"INTERLOCK " + each.text + " does not hold, or is unknown"};
-  for (const Condition& each : options_.aborts)
-    if (!view.trigger(each.rule))
-      return Error{"ABORT " + each.text +
-                   " is unknown: a topic or node that it reads was not seen"};
+  if (const std::string blind = blind_abort(); !blind.empty()) return Error{blind};
   return {};
 }
 
@@ -191,6 +232,10 @@ Expected<std::vector<Injected>> DrillSession::prepare(const std::vector<Fault>& 
     if (!drill::acts_on_process(fault.kind) && fault.kind != FaultKind::kSetParameter &&
         found->second.lifecycle != "active")
       return Error{fault.component + " is no active lifecycle node"};
+    for (const auto& [name, other] : components)
+      if (drill::acts_on_process(fault.kind) && name != fault.component && other.pid != 0 &&
+          other.pid == found->second.pid)
+        return Error{fault.component + " shares its process with " + name};
     auto prepared = injector_->prepare(fault, found->second.node, found->second.pid);
     if (!prepared) return Error{prepared.error()};
     out.push_back(std::move(*prepared));
@@ -236,6 +281,8 @@ void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected)
       trial.silent.try_emplace(each, drill_clock());
     trial.trouble = why_to_end();
     if (trial.trouble.empty()) trial.trouble = aborted_ = manager_->why_it_does_not_act();
+    // The fault hides what the condition reads, so nobody would see the danger.
+    if (trial.trouble.empty()) trial.trouble = aborted_ = blind_abort();
     if (!trial.trouble.empty()) return undo_now();
     const bool noticed = is_noticed(manager_->events_since(trial.injected));
     // The guard lets a stopped process go on by itself. Others stay broken for half of the time that culprit has.
@@ -256,9 +303,21 @@ void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected)
   if (stood_still_ > begin) trial.trouble = "the drill itself stood still meanwhile";
 }
 
+void DrillSession::inject(const std::vector<Injected>& injected, Trial& trial) {
+  trial.injected = drill_clock();
+  calm_.reset();
+  for (const Injected& each : injected) {
+    say_("injects " + to_string(each.fault));
+    if (ends_at_once(each.fault)) trial.undone = drill_clock();
+    const auto done = injector_->inject(each, options_.hang);
+    if (done) continue;
+    trial.trouble = done.error();
+    return;
+  }
+}
+
 Expected<Trial> DrillSession::run(const drill::Step& step) {
   if (auto well = wait_until_well(Until::kWellOrTold); !well) return Error{well.error()};
-  if (auto may = may_inject(); !may) return Error{may.error()};
   Trial trial{step.faults, step.round};
   auto injected = prepare(step.faults);
   if (!injected) {
@@ -266,13 +325,14 @@ Expected<Trial> DrillSession::run(const drill::Step& step) {
     return trial;
   }
   if (auto noted = note(*injected); !noted) return Error{"nothing is injected: " + noted.error()};
-  trial.injected = drill_clock();
-  for (const Injected& each : *injected) {
-    say_("injects " + to_string(each.fault));
-    if (auto done = injector_->inject(each, options_.hang); !done) trial.trouble = done.error();
-    if (ends_at_once(each.fault)) trial.undone = drill_clock();
+  // A late node or a slow disk may have taken seconds, in which the robot changed.
+  auto may = wait_until_well(Until::kWellOrTold);
+  if (may) may = may_inject();
+  if (!may) {
+    (void)note({});
+    return Error{may.error()};
   }
-  calm_.reset();
+  inject(*injected, trial);
   if (trial.trouble.empty()) watch_reaction(trial, *injected);
   if (undo_all(*injected)) {
     calm_.reset();
@@ -287,9 +347,8 @@ Expected<Trial> DrillSession::run(const drill::Step& step) {
     event.erase("candidates");
     trial.events.push_back(std::move(event));
   }
-  if (!injected->empty())
-    return Error{to_string(injected->front().fault) +
-                 " cannot be undone now; the next drill of this robot tries again"};
+  left_.insert(left_.end(), injected->begin(), injected->end());
+  if (!left_.empty()) return Error{to_string(left_.front().fault) + " cannot be undone now"};
   // If the disk is full meanwhile, the record stays as it was: undoing twice harms nothing.
   (void)note({});
   return trial;

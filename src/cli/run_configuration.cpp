@@ -166,7 +166,10 @@ std::string as_toml(const CLI::App& run) {
     out += "\n";
     for (std::string line; std::getline(purpose, line);) out += "# " + line + "\n";
     if (option->count() > 0)
-      out += key + " = " + (is_flag(*option) ? "true" : toml_values(option->results())) + "\n";
+      out += key + " = " +
+             (is_flag(*option) ? (option->as<bool>() ? "true" : "false")
+                               : toml_values(option->results())) +
+             "\n";
     else
       out += "# " + key + default_in_words(*option) + "\n";
   }

@@ -138,5 +138,13 @@ TEST_F(RunConfigurationFile, LeavesAWrongLineToItsParser) {
   EXPECT_THAT(result->words, ElementsAre("run", "--no-such-option"));
 }
 
+TEST_F(RunConfigurationFile, IsPrintedWithAFlagThatTheEnvironmentTurnsOff) {
+  setenv("CULPRIT_APPROVE", "false", 1);
+  const auto result = with_configuration({"run", "my.rules", "--print-config"});
+  unsetenv("CULPRIT_APPROVE");
+  ASSERT_TRUE(result) << result.error();
+  EXPECT_THAT(result->printed, HasSubstr("\napprove = false\n"));
+}
+
 }  // namespace
 }  // namespace culprit::cli

@@ -33,11 +33,17 @@ std::string colour_code(Tone tone, Weight weight) {
   return fmt::format("\033[{}{}m", weight == Weight::kStrong ? "1;" : "", colour);
 }
 
+bool is_ignored(int signal) {
+  struct sigaction now {};
+  return sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
 sigset_t awaited(Hangup hangup) {
   sigset_t signals;
   sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
-  if (hangup == Hangup::kReloads) sigaddset(&signals, SIGHUP);
+  const bool stops = hangup == Hangup::kStops && !is_ignored(SIGHUP);
+  if (stops || hangup == Hangup::kReloads) sigaddset(&signals, SIGHUP);
   return signals;
 }
 
@@ -140,7 +146,7 @@ void StopSignals::wait() {
       continue;
     }
     const bool is_terminal_gone = has_terminal_ && isatty(STDOUT_FILENO) == 0;
-    if (signal != SIGHUP || is_terminal_gone) {
+    if (signal != SIGHUP || hangup_ == Hangup::kStops || is_terminal_gone) {
       stop();
       continue;
     }

@@ -37,9 +37,9 @@ void say(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) 
   say_text(stream, fmt::format(format, std::forward<Args>(args)...));
 }
 
-// What SIGHUP means: that the terminal is gone, which ends the program, or that it is to read its
-// files anew.
-enum class Hangup : std::uint8_t { kEnds, kReloads };
+// What SIGHUP means. kEnds: the terminal is gone, and the program ends at once. kStops: it stops as
+// on SIGTERM, unless SIGHUP was ignored (nohup). kReloads: the program reads its files anew.
+enum class Hangup : std::uint8_t { kEnds, kStops, kReloads };
 
 // Waits for SIGINT and SIGTERM on a thread of its own and then calls `stop`, once. Blocks these
 // signals in this thread and in all that it creates from now on: make one first of all. From then

@@ -50,5 +50,23 @@ TEST(StopSignals, EndTheProgramThoughEveryThreadWaits) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == EXIT_FAILURE) << status;
 }
 
+// A drill whose terminal is closed still has to undo its fault.
+TEST(StopSignals, StopOnAHangupUnlessItIsIgnored) {
+  for (const bool ignored : {false, true}) {
+    const pid_t child = fork();
+    if (child == 0) {
+      ::signal(SIGHUP, ignored ? SIG_IGN : SIG_DFL);
+      StopSignals signals(Hangup::kStops);
+      kill(getpid(), SIGHUP);
+      if (ignored) _exit(signals.stopped() ? 1 : 0);
+      signals.wait_until_stopped();
+      _exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  }
+}
+
 }  // namespace
 }  // namespace culprit

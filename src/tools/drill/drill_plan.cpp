@@ -24,14 +24,15 @@ std::int64_t limit_of(const std::string& component, const RuleSet& rules) {
 }
 
 // Why a component must not be broken. Empty: it may.
-std::string why_spared(ComponentId id, const RuleSet& rules) {
+std::string why_spared(ComponentId id, const RuleSet& rules, const PlanOptions& options) {
   const Component& component = rules[id];
   if (limit_of(component.name, rules) == 0)
     return "the rules say DRILL " + component.name + " limit 0";
   if (!component.host().empty()) return "it runs on another computer";
   if (component.composed) return "it shares a process with the other nodes of its container";
   if (!component.can_start_again()) return "no owner can start it again (LAUNCH, UNIT, CONTAINER)";
-  return "";
+  const auto spared = options.spared.find(component.name);
+  return spared == options.spared.end() ? "" : spared->second;
 }
 
 bool is_wanted(FaultKind kind, const std::string& component, const RuleSet& rules,
@@ -112,7 +113,7 @@ Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options) {
     const std::string& name = rules.components[c].name;
     if (!options.only.empty() && std::ranges::find(options.only, name) == options.only.end())
       continue;
-    if (std::string why = why_spared(ComponentId(c), rules); !why.empty()) {
+    if (std::string why = why_spared(ComponentId(c), rules, options); !why.empty()) {
       out.left_out.emplace(name, std::move(why));
       continue;
     }

@@ -1,9 +1,9 @@
 // Which faults a drill injects, in which order, and how long that takes.
 //
-// The plan is made from the rules alone, before anything is asked of the robot, so that a person can read it first.
+// The plan is made before anything is asked of the robot, so that a person can read it first.
 //   - Each round has every fault once, in an order drawn from the seed; so a budget cuts all faults alike.
-//   - A component is broken only if culprit can start it again on this computer (an owner of the rules), and never if
-//     the rules exclude it (DRILL lines).
+//   - A component is broken only if an owner on this computer could start it now, and never if the rules exclude it
+//     (DRILL lines).
 #pragma once
 
 #include <map>
@@ -23,7 +23,8 @@ struct PlanOptions {
   bool pairs = false;                // also two components killed at once
   std::optional<Duration> budget{};  // the plan ends with the last fault that fits
   std::uint64_t seed = 1;
-  Duration hang = std::chrono::seconds(3);  // how long a process is stopped, or slow
+  Duration hang = std::chrono::seconds(3);      // how long a process is stopped, or slow
+  std::map<std::string, std::string> spared{};  // components that must not be broken, and why
 };
 
 struct Step {

@@ -42,6 +42,14 @@ TEST(DrillPlan, BreaksOnlyWhatAnOwnerOnThisComputerCanStartAgain) {
                           testing::Pair("viewer", HasSubstr("no owner can start it again"))));
 }
 
+TEST(DrillPlan, LeavesAloneWhatItsOwnerCouldNotStartNow) {
+  const auto made = plan(planned_rules(), {.kinds = {FaultKind::kKill},
+                                           .spared = {{"camera", "there is no program camera"}}});
+  ASSERT_TRUE(made);
+  EXPECT_THAT(ids_of(*made), ElementsAre("kill fusion #1"));
+  EXPECT_EQ(made->left_out.at("camera"), "there is no program camera");
+}
+
 TEST(DrillPlan, TheSeedDecidesTheOrderAndEachRoundHasEveryFaultOnce) {
   const PlanOptions options{.times = 3, .seed = 7};
   const auto ids = ids_of(*plan(planned_rules(), options));

@@ -33,6 +33,7 @@ Expected<void> append(const std::filesystem::path& path, const std::string& line
   char last = '\n';
   const bool is_cut = size > 0 && pread(file, &last, 1, size - 1) == 1 && last != '\n';
   const std::string text = (is_cut ? "\n" : "") + line + "\n";
+  errno = ENOSPC;  // of a write that is cut short, which sets none
   const bool is_written =
       write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
       fsync(file) == 0;

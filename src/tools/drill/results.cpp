@@ -63,79 +63,6 @@ void add(const Trial& trial, const Finding& finding, FaultResult& out) {
   if (!trial.undone) ++out.healed;
 }
 
-// Which components fall silent with which: candidates for dependencies that the graph does not show.
-class HiddenSearch {
- public:
-  HiddenSearch(const std::vector<Trial>& trials, const Paths& paths) : paths_(paths) {
-    for (const Trial& trial : trials) {
-      if (!trial.trouble.empty()) continue;
-      const Finding finding = finding_of(trial);
-      std::set<std::string> silent = finding.silent;
-      // A repair of the component itself makes it silent, too.
-      std::erase_if(silent, [&](const auto& each) { return finding.blamed.contains(each); });
-      trials_.push_back({&trial, std::move(silent)});
-    }
-  }
-
-  std::vector<HiddenDependency> found() const {
-    std::map<std::pair<std::string, std::string>, int> often;
-    for (const auto& [fault, group] : groups()) {
-      for (const std::string& consumer : group.front()->silent) {
-        const auto is_silent = [&](const Seen* each) { return each->silent.contains(consumer); };
-        const auto times = static_cast<int>(group.size());
-        if (times < kRepeats || !std::ranges::all_of(group, is_silent) ||
-            paths_.contains({consumer, fault.component}) ||
-            happens_without(consumer, fault.component))
-          continue;
-        int& most = often[{consumer, fault.component}];
-        most = std::max(most, times);
-      }
-    }
-    std::vector<HiddenDependency> out;
-    for (const auto& [pair, times] : often) {
-      // An effect of another candidate needs no edge of its own.
-      const auto explains = [&, &found = pair](const auto& other) {
-        return other.first.second == found.second && other.first.first != found.first &&
-               paths_.contains({found.first, other.first.first});
-      };
-      if (std::ranges::none_of(often, explains)) out.push_back({pair.first, pair.second, times});
-    }
-    return out;
-  }
-
- private:
-  struct Seen {
-    const Trial* trial;
-    std::set<std::string> silent;
-  };
-  struct ByText {
-    bool operator()(const Fault& a, const Fault& b) const { return to_string(a) < to_string(b); }
-  };
-
-  std::map<Fault, std::vector<const Seen*>, ByText> groups() const {
-    std::map<Fault, std::vector<const Seen*>, ByText> groups;
-    for (const Seen& each : trials_) {
-      if (each.trial->faults.size() == 1) groups[each.trial->faults.front()].push_back(&each);
-    }
-    return groups;
-  }
-
-  // In a trial that neither breaks the producer nor anything that the graph shows the consumer to need.
-  bool happens_without(const std::string& consumer, const std::string& producer) const {
-    return std::ranges::any_of(trials_, [&](const Seen& each) {
-      const auto explains = [&](const Fault& fault) {
-        return fault.component == producer || fault.component == consumer ||
-               paths_.contains({consumer, fault.component}) ||
-               paths_.contains({producer, fault.component});
-      };
-      return each.silent.contains(consumer) && std::ranges::none_of(each.trial->faults, explains);
-    });
-  }
-
-  const Paths& paths_;
-  std::vector<Seen> trials_;
-};
-
 }  // namespace
 
 Interval interval_of(int successes, int tries) {
@@ -213,7 +140,7 @@ Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const
     if (each.tried > 0 && each.helped == 0)
       out.never_helped.push_back(each.rule + "." + each.strategy);
   }
-  out.hidden = HiddenSearch(trials, paths).found();
+  out.hidden = hidden_dependencies(trials, paths);
   return out;
 }
 

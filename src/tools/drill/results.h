@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drill/healthy.h"
+#include "drill/hidden.h"
 #include "drill/trial.h"
 #include "language/rule_set.h"
 
@@ -54,12 +55,6 @@ struct StrategyResult {
   std::int64_t impact = 0;  // cycles
 };
 
-struct HiddenDependency {
-  std::string consumer;
-  std::string producer;
-  int times = 0;  // in as many faults of the producer
-};
-
 struct Results {
   std::string robot;
   std::string date;  // "2026-12-01"
@@ -80,7 +75,7 @@ struct Results {
 Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const Paths& paths,
                    const std::string& date);
 
-// Only what repeated and never happened without: at least this often.
+// Outcomes that a measured number needs.
 inline constexpr int kRepeats = 3;
 
 // READY that the longest start needs. @pre !starts.empty()

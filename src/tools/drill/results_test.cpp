@@ -1,5 +1,8 @@
 #include "drill/results.h"
 
+#include <csignal>
+#include <sys/resource.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -87,6 +90,29 @@ TEST(DrillRecord, ResumesWhatIsNotDoneAndRefusesAnotherPlan) {
   const auto other = DrillRecord::open(folder.path() / "drill", {"other rules", head.plan});
   ASSERT_FALSE(other);
   EXPECT_THAT(other.error(), HasSubstr("choose another --record"));
+}
+
+TEST(DrillRecord, OnAFullDiskDoesNotCountTheTrialAndGoesOnAfterwards) {
+  const test::TestFolder folder;
+  const DrillHead head{"rules", {"kill camera #1", "kill camera #2"}};
+  auto record = DrillRecord::open(folder.path() / "drill", head);
+  ASSERT_TRUE(record && record->add(killed(1)));
+  const auto size = std::filesystem::file_size(record->file("trials.jsonl"));
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit few{size + 20, before.rlim_max};  // in the middle of the next line
+  signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &few);
+  const auto added = record->add(killed(2));
+  setrlimit(RLIMIT_FSIZE, &before);
+  ASSERT_FALSE(added);
+  EXPECT_THAT(added.error(), HasSubstr("trials.jsonl"));
+  EXPECT_FALSE(record->has("kill camera #2"));
+  auto resumed = DrillRecord::open(folder.path() / "drill", head);
+  ASSERT_TRUE(resumed && resumed->add(killed(2))) << "behind the line that was cut";
+  resumed = DrillRecord::open(folder.path() / "drill", head);
+  EXPECT_TRUE(resumed->has("kill camera #1"));
+  EXPECT_TRUE(resumed->has("kill camera #2"));
 }
 
 TEST(DrillResults, SayTheRuleTheRemedyAndTheTimeOfAFault) {
