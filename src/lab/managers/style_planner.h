@@ -1,8 +1,8 @@
 // How managers plan that the paper names beside those of the SUAVE study. None asks which failure is
-// another one's effect. Of the articles on AC-ROS (MODELS 2020), by Vogel (SEAMS 2012) and by
-// Ghahremani no public text was found beyond abstracts (arXiv 1805.03549 and 2005.11180, Ghahremani;
-// 1805.08678, Vogel) and the section named below, so each is in the style of its authors. Each comes
-// with the source that it was taken from, and with what of it can be checked (style_planner_test.cpp).
+// another one's effect. We could not read the articles on AC-ROS (MODELS 2020), by Vogel (SEAMS 2012)
+// and by Ghahremani, only abstracts (arXiv 1805.03549 and 2005.11180, Ghahremani; 1805.08678, Vogel)
+// and the section named below, so each is in the style of its authors. Each comes with the source that
+// it was taken from, and with what of it can be checked (style_planner_test.cpp).
 //
 //   rebet       Alberts et al., ReBeT, its reactive adaptation logic, from its public code
 //               (EGAlberts/ReBeT, rebet/include/rebet/adapt_node.h): decorators of a behaviour tree,
