@@ -20,7 +20,7 @@ namespace {
 //
 // No study repeats more than its intervals need. Regrets have a mean of 0.7 % and are at most 6 %
 // (docs/study-rca.md), so their standard deviation is below 2 %: 400 robots know the mean to ± 0.2
-// points (95 %), and 1000 to ± 0.12. Of a fleet, 12 models know each ratio to about ± 0.1
+// points (95 %), and 1000 to ± 0.12. Twelve models of a fleet know each ratio to about ± 0.1
 // (docs/fleet.md), and 40 would take longer than all the rest.
 struct Step {
   const char* name;

@@ -93,7 +93,7 @@ Table results_table(const SuaveCampaign& campaign, const std::vector<SuaveRow>& 
           row.outliers, row.runs, mean_sd(row.searched_s), mean_sd(row.last_distance_m)));
   }
   table.notes.push_back(
-      "Reaction times are by name; what the paper prints as U1 and U2 of others is exchanged "
+      "Reaction times are by name; the paper's U1 and U2 of others are exchanged "
       "(docs/study-suave.md).");
   table.notes.push_back(fmt::format("{} runs each, seed {}, generation {}.", campaign.runs,
                                     campaign.seed, campaign.generation->name));
