@@ -247,10 +247,14 @@ std::optional<RcaCase> case_of(const Exemplar& exemplar) {
 
 // Those that count, of `count` faults.
 std::vector<RcaCase> cases_of(std::size_t count, std::uint64_t seed, std::size_t of_each,
+                              Faults faults,
                               const std::function<Exemplar(std::size_t, std::uint64_t)>& exemplar) {
   std::vector<RcaCase> cases;
+  simulation::Random random(simulation::mix(seed));
   for (std::size_t i = 0; i < count * of_each; ++i) {
-    if (auto made = case_of(exemplar(i % count, simulation::mix(simulation::mix(seed) + i))))
+    const std::size_t fault =
+        faults == Faults::kDrawn ? static_cast<std::size_t>(random.next() % count) : i % count;
+    if (auto made = case_of(exemplar(fault, simulation::mix(simulation::mix(seed) + i))))
       cases.push_back(std::move(*made));
   }
   return cases;
@@ -327,17 +331,18 @@ Exemplar rover_exemplar(const rover::Fault& fault, std::uint64_t seed) {
 
 }  // namespace
 
-std::vector<RcaCase> sunset_cases(std::uint64_t seed, std::size_t of_each) {
-  return cases_of(sunset::faults().size(), seed, of_each,
+std::vector<RcaCase> sunset_cases(std::uint64_t seed, std::size_t of_each, Faults faults) {
+  return cases_of(sunset::faults().size(), seed, of_each, faults,
                   [](std::size_t i, std::uint64_t own_seed) {
                     return sunset_exemplar(sunset::faults()[i], own_seed);
                   });
 }
 
-std::vector<RcaCase> rover_cases(std::uint64_t seed, std::size_t of_each) {
-  return cases_of(rover::faults().size(), seed, of_each, [](std::size_t i, std::uint64_t own_seed) {
-    return rover_exemplar(rover::faults()[i], own_seed);
-  });
+std::vector<RcaCase> rover_cases(std::uint64_t seed, std::size_t of_each, Faults faults) {
+  return cases_of(rover::faults().size(), seed, of_each, faults,
+                  [](std::size_t i, std::uint64_t own_seed) {
+                    return rover_exemplar(rover::faults()[i], own_seed);
+                  });
 }
 
 }  // namespace culprit::study

@@ -15,8 +15,16 @@
 
 namespace culprit::study {
 
-// `of_each` cases of each fault. The same seed gives the same cases.
-std::vector<rca::RcaCase> sunset_cases(std::uint64_t seed, std::size_t of_each);
-std::vector<rca::RcaCase> rover_cases(std::uint64_t seed, std::size_t of_each);
+enum class Faults : std::uint8_t {
+  kEach,  // one after the other
+  kDrawn  // as many, drawn at random, so that no public case tells which one a hidden case has
+};
+
+// `of_each` cases of each fault, or as many of drawn ones. Those that do not count are left out. The
+// same seed gives the same cases.
+std::vector<rca::RcaCase> sunset_cases(std::uint64_t seed, std::size_t of_each,
+                                       Faults faults = Faults::kEach);
+std::vector<rca::RcaCase> rover_cases(std::uint64_t seed, std::size_t of_each,
+                                      Faults faults = Faults::kEach);
 
 }  // namespace culprit::study

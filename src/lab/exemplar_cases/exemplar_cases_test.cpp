@@ -84,6 +84,20 @@ TEST(SunsetCases, AreTheSameEachTime) {
     EXPECT_EQ(again[i].readings, of_sunset()[i].readings);
 }
 
+// Else the number of a hidden case would tell its fault.
+TEST(SunsetCases, AreOfOtherFaultsInAnotherOrderIfTheseAreDrawn) {
+  const auto kinds_of = [](const std::vector<RcaCase>& cases) {
+    std::vector<std::string> kinds;
+    for (const RcaCase& made : cases) kinds.push_back(made.truth.causes.front().kind);
+    return kinds;
+  };
+  const std::vector<RcaCase> drawn = sunset_cases(5, 1, Faults::kDrawn);
+  ASSERT_FALSE(drawn.empty());
+  for (const RcaCase& made : drawn) expect_a_case(made);
+  EXPECT_NE(kinds_of(drawn), kinds_of(of_sunset()));
+  EXPECT_NE(kinds_of(drawn), kinds_of(sunset_cases(6, 1, Faults::kDrawn)));
+}
+
 TEST(RoverCases, HaveACauseThatShowsElsewhere) {
   EXPECT_GE(of_rover().size(), 10U);
   for (const RcaCase& made : of_rover()) expect_a_case(made);

@@ -212,6 +212,11 @@ std::string command_of(const RcaOptions& options) {
       options.seed);
 }
 
+study::rca::CaseExport::Others exemplar_cases(std::uint64_t seed, study::Faults faults) {
+  return {{"rover", study::rover_cases(seed, kRoverCasesOfEachFault, faults)},
+          {"sunset", study::sunset_cases(seed, kSunsetCasesOfEachFault, faults)}};
+}
+
 int export_cases(const RcaOptions& options, const RcaCampaign& campaign) {
   namespace fs = std::filesystem;
   study::rca::CaseExport wanted = options.cases;
@@ -227,8 +232,9 @@ int export_cases(const RcaOptions& options, const RcaCampaign& campaign) {
   if (fs::exists(folder, error) && !fs::is_empty(folder, error))
     return fail(fmt::format("{}: is not an empty folder; choose a new one", folder.string()),
                 kUsage);
-  wanted.others = {{"rover", study::rover_cases(wanted.seed, kRoverCasesOfEachFault)},
-                   {"sunset", study::sunset_cases(wanted.seed, kSunsetCasesOfEachFault)}};
+  wanted.others = exemplar_cases(wanted.seed, study::Faults::kEach);
+  if (wanted.hidden_seed)
+    wanted.hidden_others = exemplar_cases(*wanted.hidden_seed, study::Faults::kDrawn);
   const StopSignals signals;
   std::optional<Progress> progress;
   const auto written = study::rca::export_cases(

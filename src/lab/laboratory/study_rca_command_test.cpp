@@ -101,6 +101,20 @@ TEST(StudyRcaExport, WritesTheSmallSetOnce) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(StudyRcaExport, HidesCasesOfEachKindOfRobot) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "culprit-study-rca-hidden";
+  std::filesystem::remove_all(folder);
+  EXPECT_EQ(
+      export_to(folder, {"--cases", "1", "--hidden-seed", "98765432123", "--hidden-cases", "1"}),
+      kOk);
+  for (const std::string set : {"hidden", "hidden-rover", "hidden-sunset"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / set / "case-0001/signals.csv")) << set;
+    EXPECT_FALSE(std::filesystem::exists(folder / set / "case-0001/truth.json")) << set;
+    EXPECT_TRUE(std::filesystem::exists(folder / (set + "-truth.json"))) << set;
+  }
+  std::filesystem::remove_all(folder);
+}
+
 TEST_F(StudyRcaCommand, RefusesOptionsThatAnExportDoesNotUse) {
   EXPECT_THAT(run({"--export-cases", "nowhere"}), HasSubstr("--export-cases"));
   EXPECT_THAT(run({"--hidden-seed", "4"}), HasSubstr("--hidden-seed requires --export-cases"));

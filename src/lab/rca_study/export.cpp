@@ -128,60 +128,63 @@ class Exporter {
     write("score.py", kScorer);
     write_cases(wanted_.seed, wanted_.cases, false);
     if (wanted_.hidden_seed) write_cases(*wanted_.hidden_seed, wanted_.hidden_cases, true);
-    for (const auto& [robot, cases] : wanted_.others) write_others(robot, cases);
+    for (const auto& [robot, cases] : wanted_.others) write_others(robot, cases, false);
+    for (const auto& [robot, cases] : wanted_.hidden_others) write_others(robot, cases, true);
     return error_ ? Expected<void>(*error_) : Expected<void>();
   }
 
  private:
-  using Answers = std::map<std::string, Json>;  // by adviser
-
-  static std::string name_of(std::size_t i) { return fmt::format("case-{:04}", i + 1); }
+  // A folder of cases, and what is written beside it.
+  struct Set {
+    std::string folder;  // "public"
+    std::string prefix;  // of the files beside it
+    bool is_hidden = false;
+    std::size_t cases = 0;
+    Json truths = Json::object();
+    std::map<std::string, Json> answers{};  // by adviser
+  };
 
   void write_cases(std::uint64_t seed, std::size_t count, bool is_hidden) {
-    Json truths = Json::object();
-    Answers answers;
+    Set set = is_hidden ? Set{"hidden", "hidden-", true} : Set{"public", ""};
     Tries tries{seed};
+    const std::size_t total = wanted_.cases + (wanted_.hidden_seed ? wanted_.hidden_cases : 0);
     for (std::size_t i = 0; i < count && !error_; ++i) {
       const auto made = next_case(wanted_.settings[i % wanted_.settings.size()], tries);
       if (!made) return;
-      const std::string name = name_of(i);
-      const std::string folder = (is_hidden ? "hidden/" : "public/") + name + "/";
-      write_case(folder, name, *made, answers);
-      Json truth = truth_json(*made);
-      if (!is_hidden) write(folder + "truth.json", entry_by_entry(truth));
-      truths[name] = std::move(truth);
-      const std::size_t total = wanted_.cases + (wanted_.hidden_seed ? wanted_.hidden_cases : 0);
+      write_case(set, *made);
       if (go_on_ && !go_on_(++done_, total)) complain("it was interrupted");
     }
-    if (is_hidden) write("hidden-truth.json", member_by_member(truths));
-    write_answers(is_hidden ? "hidden-" : "", answers);
+    finish(set);
   }
 
-  void write_others(const std::string& robot, const std::vector<RcaCase>& cases) {
-    Answers answers;
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      const std::string folder = robot + "/" + name_of(i) + "/";
-      write_case(folder, name_of(i), cases[i], answers);
-      write(folder + "truth.json", entry_by_entry(truth_json(cases[i])));
-    }
-    write_answers(robot + "-", answers);
+  void write_others(const std::string& robot, const std::vector<RcaCase>& cases, bool is_hidden) {
+    const std::string folder = (is_hidden ? "hidden-" : "") + robot;
+    Set set{folder, folder + "-", is_hidden};
+    for (const RcaCase& made : cases) write_case(set, made);
+    finish(set);
   }
 
-  // Graph, signals, events and rules; and the answers of the advisers.
-  void write_case(const std::string& folder, const std::string& name, const RcaCase& made,
-                  Answers& answers) {
+  // Graph, signals, events, rules, and the truth of a public case.
+  void write_case(Set& set, const RcaCase& made) {
+    const std::string name = fmt::format("case-{:04}", ++set.cases);
+    const std::string folder = set.folder + "/" + name + "/";
     write(folder + "graph.json", graph_of(made.scenario));
     write(folder + "signals.csv", signals_of(made));
     write(folder + "events.csv", events_of(made));
     write(folder + "robot.rules", made.rules);
+    Json truth = truth_json(made);
+    if (!set.is_hidden) write(folder + "truth.json", entry_by_entry(truth));
+    set.truths[name] = std::move(truth);
     for (const auto& [adviser, advice] : made.advice)
-      answers.try_emplace(adviser, Json::object()).first->second[name] =
+      set.answers.try_emplace(adviser, Json::object()).first->second[name] =
           answer_json(made.scenario, advice);
   }
 
-  void write_answers(const std::string& prefix, const Answers& answers) {
-    for (const auto& [adviser, of_all] : answers)
-      write(fmt::format("{}answers-{}.json", prefix, adviser), member_by_member(of_all));
+  // The truths of hidden cases, and the answers of the advisers.
+  void finish(const Set& set) {
+    if (set.is_hidden) write(set.prefix + "truth.json", member_by_member(set.truths));
+    for (const auto& [adviser, of_all] : set.answers)
+      write(fmt::format("{}answers-{}.json", set.prefix, adviser), member_by_member(of_all));
   }
 
   struct Tries {

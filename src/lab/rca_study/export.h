@@ -8,6 +8,7 @@
 //     answers-bayes.json           of each adviser, on the public cases
 //     hidden-answers-bayes.json    on the hidden ones
 //     sunset/case-0001/            of other robots, as the public ones; sunset-answers-bayes.json
+//     hidden-sunset/case-0001/     as the hidden ones; hidden-sunset-truth.json
 #pragma once
 
 #include <functional>
@@ -35,7 +36,9 @@ struct CaseExport {
   std::optional<std::uint64_t> hidden_seed;  // it is in no file
   std::vector<std::string> advisers = {"bayes", "informed", "paper"};
   Objective objective = Objective::kBalanced;
-  std::map<std::string, std::vector<RcaCase>> others{};  // by robot: "sunset"
+  using Others = std::map<std::string, std::vector<RcaCase>>;  // by robot: "sunset"
+  Others others{};                                             // public
+  Others hidden_others{};
   std::string command;  // that makes the public cases, for README.md
 };
 

@@ -5,6 +5,7 @@
 #include "json/json.h"
 #include "rca_study/campaign_json.h"
 #include "study/pareto.h"
+#include "study/statistics/holm.h"
 #include "study/statistics/welch.h"
 #include "study/tables/columns.h"
 
@@ -70,8 +71,16 @@ Json figures(const RcaRow& row, std::optional<bool> is_on_front, Times times) {
 
 std::string percent(std::optional<double> share) { return share ? number(100 * *share, 1) : "–"; }
 
-// bayes against each other planner of the same setting.
+// bayes against each other planner of the same setting; p by Holm over all of the table.
 void add_tests(const std::vector<RcaRow>& rows, Table& table) {
+  struct Test {
+    const RcaRow* ours;
+    const RcaRow* other;
+    WelchTest wrong;
+    WelchTest recovery;
+  };
+  std::vector<Test> tests;
+  std::vector<double> p;
   for (const RcaRow& ours : rows) {
     if (ours.planner != "bayes") continue;
     for (const RcaRow& other : rows) {
@@ -79,13 +88,19 @@ void add_tests(const std::vector<RcaRow>& rows, Table& table) {
       const auto wrong = welch_test(other.wrong_component, ours.wrong_component);
       const auto recovery = welch_test(other.recovery_s, ours.recovery_s);
       if (!wrong || !recovery) continue;
-      table.notes.push_back(fmt::format(
-          "{} components, {} faults, noise {:g}{}: bayes beside {}: wrong components {:+.2f} "
-          "(p {}), recovery {:+.1f} s (p {}); Welch.",
-          ours.setting.components, ours.setting.faults, ours.setting.noise,
-          ours.setting.is_cyclic ? ", cyclic" : "", other.planner, wrong->difference,
-          p_value(wrong->p), recovery->difference, p_value(recovery->p)));
+      tests.push_back({&ours, &other, *wrong, *recovery});
+      p.insert(p.end(), {wrong->p, recovery->p});
     }
+  }
+  p = holm(p);
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const RcaSetting& setting = tests[i].ours->setting;
+    table.notes.push_back(fmt::format(
+        "{} components, {} faults, noise {:g}{}: bayes beside {}: wrong components {:+.2f} "
+        "(p {}), recovery {:+.1f} s (p {}); Welch, Holm over the table.",
+        setting.components, setting.faults, setting.noise, setting.is_cyclic ? ", cyclic" : "",
+        tests[i].other->planner, tests[i].wrong.difference, p_value(p[2 * i]),
+        tests[i].recovery.difference, p_value(p[2 * i + 1])));
   }
 }
 

@@ -1,5 +1,6 @@
 #include "rca_study/report.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "json/json.h"
@@ -27,6 +28,27 @@ TEST(RcaReport, SaysWhichPlannersNoOtherBeatsInTheSameSetting) {
   EXPECT_EQ(document["rows"][2]["on_front"], true);
   EXPECT_TRUE(document["rows"][3]["on_front"].is_null()) << "it is a bound";
   EXPECT_EQ(document["rows"][4]["on_front"], true);
+}
+
+// Two comparisons are four tests: the weakest stays as it is, the others count for more than one.
+TEST(RcaReport, CorrectsItsTestsForTheirNumber) {
+  const auto sampled = [](const std::string& planner, double wrong, double recovery_s) {
+    RcaRow row;
+    row.planner = planner;
+    row.episodes = 40;
+    row.wrong_component = Moments::of_summary(wrong, 1, 40);
+    row.recovery_s = Moments::of_summary(recovery_s, 10, 40);
+    return row;
+  };
+  RcaCampaign campaign;
+  campaign.settings = {RcaSetting{}};
+  const std::vector<RcaRow> rows = {sampled("naive", 0.6, 20), sampled("paper", 9, 90),
+                                    sampled("bayes", 0, 20)};
+  const std::vector<std::string> notes = rca_table(campaign, rows, Times::kLeftOut).notes;
+  // Welch: t 2.683 with 78 degrees, p 0.0089; two of the four are smaller.
+  EXPECT_THAT(notes, testing::Contains(testing::HasSubstr(
+                         "bayes beside naive: wrong components -0.60 (p 0.018), recovery +0.0 s "
+                         "(p 1.000); Welch, Holm over the table.")));
 }
 
 }  // namespace

@@ -520,6 +520,12 @@ def table(scores):
     )
 
 
+def certainty(count):
+    """How far chance moves a share of so many cases at most, in percentage points (95 %, normal approximation)."""
+    points = min(100.0, 100 * 1.96 * math.sqrt(0.25 / count))
+    return f"{count} cases: a share is uncertain by up to {points:.0f} points (95 %)"
+
+
 def run(arguments):
     cases = read_cases(arguments.cases)
     truths = read_truths(arguments.cases, arguments.truth, cases)
@@ -536,6 +542,7 @@ def run(arguments):
         print(json.dumps(scores, indent=1))
     else:
         print(table(scores))
+        print(certainty(len(cases)))
 
 
 def main():

@@ -15,8 +15,9 @@ void Summary::add(const std::vector<double>& values, bool is_censored, const Wei
     if (!is_censored) distribution_.add(value);
   }
   if (is_censored) censored_ += static_cast<std::int64_t>(values.size());
-  bootstrap_.add(weights, std::accumulate(values.begin(), values.end(), 0.0),
-                 static_cast<double>(values.size()));
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  clusters_.add(sum, static_cast<double>(values.size()));
+  bootstrap_.add(weights, sum, static_cast<double>(values.size()));
 }
 
 const Row* CampaignResult::find(const Configuration& configuration) const {

@@ -10,6 +10,7 @@
 #include "study/campaign.h"
 #include "study/metric.h"
 #include "study/statistics/bootstrap.h"
+#include "study/statistics/clusters.h"
 #include "study/statistics/distribution.h"
 #include "study/statistics/moments.h"
 
@@ -26,6 +27,8 @@ class Summary {
   // The population's, as in the paper's tables.
   double sd() const { return moments_.population_sd(); }
   const Moments& moments() const { return moments_; }
+  // For tests: as of so many independent values, since those of one run are not.
+  Moments independent() const { return clusters_.independent(moments_); }
   // 95 % interval of the mean, by bootstrap over runs; empty for too few runs.
   std::optional<Interval> interval() const { return bootstrap_.interval(); }
   // Values that are lower bounds. They are in the mean, which is a lower bound then too, and, where
@@ -36,6 +39,7 @@ class Summary {
 
  private:
   Moments moments_;
+  Clusters clusters_;  // the runs
   BootstrapMean bootstrap_;
   Distribution distribution_;
   std::int64_t censored_ = 0;

@@ -41,6 +41,8 @@ TEST(CampaignFold, PoolsReactionTimesOverTheRuns) {
   EXPECT_EQ(row[Metric::kReaction].count(), 4);
   EXPECT_DOUBLE_EQ(row[Metric::kReaction].mean(), 3);
   EXPECT_EQ(row[Metric::kRatio].count(), 3);
+  EXPECT_EQ(row[Metric::kReaction].independent().count(), 2) << "two runs have reaction times";
+  EXPECT_EQ(row[Metric::kRatio].independent().count(), 3);
 }
 
 // As the script does: a run that it leaves out still counts its redeployments.

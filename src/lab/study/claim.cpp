@@ -34,8 +34,10 @@ struct Gap {
     return Gap{-difference, error, degrees, is_known}.p_above(-bound);
   }
   double p_within(double margin) const { return std::max(p_above(-margin), p_below(margin)); }
+  // Either side may be the true one: with a margin of 0 it is the two-sided p.
   double p_beyond(double margin) const {
-    return Gap{std::abs(difference), error, degrees, is_known}.p_above(margin);
+    const Gap largest{std::abs(difference), error, degrees, is_known};
+    return std::min(1.0, largest.p_above(margin) + largest.p_above(-margin));
   }
 };
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "study/statistics/holm.h"
+#include "study/statistics/welch.h"
 
 namespace culprit::study {
 namespace {
@@ -33,6 +34,15 @@ TEST(Claims, OfEqualityNeedTheDataToShowIt) {
   EXPECT_EQ(judged(is_alike(group(1, 1, 5), group(1.1, 1, 5), 0.5)).verdict, Verdict::kOpen);
   EXPECT_EQ(judged(is_alike(group(1, 1, 400), group(2, 1, 400), 0.5)).verdict,
             Verdict::kContradicted);
+}
+
+// A difference on either side is against equality, so a margin of nearly 0 leaves Welch's two-sided test.
+TEST(Claims, OfEqualityAreContradictedFromBothSides) {
+  const Group a = group(1, 1, 20);
+  const Group b = group(1.5, 1, 20);
+  const double two_sided = welch_test(a.values, b.values)->p;
+  EXPECT_NEAR(is_alike(a, b, 1e-9).p_against, two_sided, 1e-6);
+  EXPECT_NEAR(is_alike(b, a, 1e-9).p_against, two_sided, 1e-6);
 }
 
 TEST(Claims, HoldOnlyIfEachPartHolds) {

@@ -85,6 +85,7 @@ void metric_line(std::string& out, const Row& row, Metric metric,
       .text(std::to_string(summary.count()))
       .number_if(exists, summary.mean())
       .number_if(exists, summary.sd())
+      .text(std::to_string(summary.independent().count()))
       .number_if(interval.has_value(), interval ? interval->low : 0)
       .number_if(interval.has_value(), interval ? interval->high : 0)
       .text(std::to_string(summary.censored()));
@@ -100,7 +101,7 @@ void metric_line(std::string& out, const Row& row, Metric metric,
 std::string metrics_csv(const CampaignResult& result) {
   std::string out(kConfigurationFields);
   out +=
-      ",runs,metric,count,mean,sd,ci_low,ci_high,censored,published_mean,published_sd,"
+      ",runs,metric,count,mean,sd,independent,ci_low,ci_high,censored,published_mean,published_sd,"
       "is_within\n";
   for (const Row& row : result.rows) {
     const std::vector<MeanComparison> comparisons = compare_means(row);

@@ -10,8 +10,8 @@
 namespace culprit::study {
 
 // A line for each metric of each row:
-// dependencies,criticality,impact,planner,profile,probabilities,runs,metric,count,mean,sd,ci_low,ci_high,
-// censored,published_mean,published_sd,is_within
+// dependencies,criticality,impact,planner,profile,probabilities,runs,metric,count,mean,sd,independent,
+// ci_low,ci_high,censored,published_mean,published_sd,is_within
 std::string metrics_csv(const CampaignResult& result);
 
 // A line for each metric of each effect:

@@ -24,7 +24,7 @@ TEST(StudyCsv, HasALineForEachMetricOfEachRow) {
   const auto table = lines(metrics_csv(result));
   ASSERT_EQ(table.size(), 1 + 9 * kMetricCount);
   for (const std::string& line : table)
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 16) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 17) << line;
   EXPECT_TRUE(table[1].starts_with("false,false,false,paper,paper,ideal,20,ratio,20,0."))
       << table[1];
   EXPECT_TRUE(table[1].ends_with(",0,0.75,0.2,true")) << table[1];

@@ -2,10 +2,11 @@
 //
 // Two means are alike if they differ by less than the margin of --validate, half the published
 // standard deviation (in that configuration); chosen before these tests, with the old tables known.
-// A learned rate is right within 0.1.
+// A learned rate is right within 0.1: of the rate at which the outcomes that were learned from ended
+// the fault and, since the learner selects these, also of the rate over all executions.
 //
-// The paper does not print how many reaction times it pooled. They count as one a run, which
-// understates how many there were.
+// Our reaction times of one run are not independent, and count for less (statistics/clusters.h). The
+// paper does not print how many it pooled; they count as one a run.
 #pragma once
 
 #include <optional>

@@ -34,6 +34,21 @@ TEST(PaperClaims, HoldForDataAsThePaperPrintsIt) {
       0);
 }
 
+// The learner selects the outcomes that it learns from: a rate that is right of these may be wrong of
+// all executions.
+TEST(PaperClaims, JudgeWhatIsLearnedOnAllExecutionsToo) {
+  Findings findings = synthetic_findings(20);
+  for (LearningCurve& curve : findings.learning) {
+    curve.learned.back() = Moments::of_summary(curve.believed(), 0.01, 20);
+    curve.truth = curve.believed();
+    curve.truth_of_all = curve.believed() - 0.2;
+  }
+  const std::vector<Claim> claims = paper_claims(findings, ablations(findings.campaign).front());
+  EXPECT_EQ(named(claims, "learned P of F1 and F4 reach the true rates").verdict, Verdict::kHolds);
+  EXPECT_EQ(named(claims, "learned P reach the rates of all executions").verdict,
+            Verdict::kContradicted);
+}
+
 // Every cell of the paper's table of effects is part of a claim: those that are coloured, and those that are not.
 TEST(PaperClaims, CoverEachCellOfTheTableOfEffects) {
   const Findings findings = synthetic_findings(20);

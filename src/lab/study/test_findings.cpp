@@ -25,6 +25,7 @@ LearningCurve synthetic_curve(std::string failure, std::string rule, std::string
   LearningCurve curve{
       std::move(failure), std::move(rule), std::move(strategy), initial, truth, {}, 162};
   curve.counted = curve.executed;
+  curve.truth_of_all = truth;
   curve.planner = "paper";
   std::mt19937 engine(static_cast<unsigned>(truth * 1000));
   double alpha = 10 * initial;

@@ -165,6 +165,7 @@ TEST(SuaveReport, HasARowForEachManagerAndTestsAgainstEach) {
   const auto tables = suave_tables(result);
   ASSERT_EQ(tables.size(), 3u);
   EXPECT_EQ(tables[0].rows.size(), 3u + 2u);  // and the paper's, of those that it has
+  EXPECT_THAT(tables[0].notes.front(), testing::HasSubstr("All runs: search "));
 }
 
 TEST(SuaveTracks, AreWrittenDownWithoutChangingTheRun) {

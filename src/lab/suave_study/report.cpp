@@ -87,13 +87,13 @@ Table results_table(const SuaveCampaign& campaign, const std::vector<SuaveRow>& 
   }
   for (const SuaveRow& row : rows) {
     if (row.manager == kCulprit)
-      table.notes.push_back(
-          fmt::format("As in the paper, runs of its own manager that searched longer than the mean "
-                      "and twice the sd are left out: {} of {}.",
-                      row.outliers, row.runs));
+      table.notes.push_back(fmt::format(
+          "As in the paper, searches of its own manager above the mean and twice the sd are left "
+          "out: {} of {}. All runs: search {} s, inspected {} m.",
+          row.outliers, row.runs, mean_sd(row.searched_s), mean_sd(row.last_distance_m)));
   }
   table.notes.push_back(
-      "Reaction times are by name; what the paper prints as U1 and U2 of others is exchanged "
+      "Reaction times are by name; the paper's U1 and U2 of others are exchanged "
       "(docs/study-suave.md).");
   table.notes.push_back(fmt::format("{} runs each, seed {}, generation {}.", campaign.runs,
                                     campaign.seed, campaign.generation->name));

@@ -52,11 +52,23 @@ double change(const Ablation& ablation, std::size_t effect) {
   return ablation.effects[effect].changes[kReactionColumn].percent.value_or(0);
 }
 
+bool is_shortened(const Effect& effect, Metric metric) {
+  for (std::size_t column = 0; column < kPublishedMetrics.size(); ++column) {
+    if (kPublishedMetrics[column] == metric)
+      return effect.changes[column].significance == published::Significance::kBetter;
+  }
+  return false;
+}
+
 SweepPoint judged(const Planned& planned, const CampaignResult& result) {
   constexpr std::size_t kImpactWithC = 10;  // in the paper's table of effects
   const Ablation ablation = ablations(result).front();
-  SweepPoint point{planned.planner, planned.variation, order_agreement(ablation), {}, 0};
+  SweepPoint point{planned.planner, planned.variation, order_agreement(ablation), {}, 0, 0};
   point.reaction_by_impact = {change(ablation, kImpactWithC), change(ablation, kImpactWithC + 1)};
+  for (const Effect& effect : ablation.effects) {
+    if (effect.published->factor == published::Factor::kImpact)
+      point.downtime_shortened += is_shortened(effect, Metric::kDowntime) ? 1 : 0;
+  }
   for (const MeanComparison& mean : ablation.means) {
     const double off = std::abs((*mean.row)[mean.metric].mean() - mean.theirs.mean);
     point.means_near += off < mean.theirs.sd / 2 ? 1 : 0;
@@ -99,6 +111,7 @@ void add_results(std::vector<Column>& columns) {
   for (Column& column : rho_columns()) columns.push_back(std::move(column));
   columns.push_back({"reaction by S, C on [%]", "without D"});
   columns.push_back({"reaction by S, C on [%]", "with D"});
+  columns.push_back({"", "downtime shorter by S, of 4"});
   columns.push_back({"", "means near"});
 }
 
@@ -106,6 +119,7 @@ void add_results(std::vector<Column>& columns) {
 struct Sum {
   std::array<double, kPublishedMetrics.size()> rho{};
   std::array<double, 2> reaction{};
+  double shortened = 0;
   double near = 0;
   double points = 0;
 };
@@ -127,6 +141,7 @@ Sums sums_of(const std::vector<SweepPoint>& points, const SweepCampaign& campaig
         Sum& sum = sum_of({planner, level.constant, level.value});
         for (std::size_t i = 0; i < sum.rho.size(); ++i) sum.rho[i] += rho(point, i);
         for (std::size_t i = 0; i < 2; ++i) sum.reaction[i] += point.reaction_by_impact[i];
+        sum.shortened += point.downtime_shortened;
         sum.near += point.means_near;
         sum.points += 1;
       }
@@ -149,6 +164,7 @@ Table effects_table(const std::vector<SweepPoint>& points, const SweepCampaign& 
     std::vector<Cell> cells = {{key[0]}, {key[1]}, {key[2]}, {number(sum.points, 0)}};
     for (const double each : sum.rho) cells.push_back({number(each / sum.points)});
     for (const double each : sum.reaction) cells.push_back({number(each / sum.points, 0)});
+    cells.push_back({number(sum.shortened / sum.points, 1)});
     cells.push_back({number(sum.near / sum.points, 1)});
     effects.rows.push_back(std::move(cells));
   }
@@ -186,6 +202,7 @@ Table closest_table(const std::vector<SweepPoint>& points, const SweepCampaign& 
       for (std::size_t metric = 0; metric < kPublishedMetrics.size(); ++metric)
         cells.push_back({number(rho(point, metric))});
       for (const double each : point.reaction_by_impact) cells.push_back({number(each, 0)});
+      cells.push_back({fmt::format("{}", point.downtime_shortened)});
       cells.push_back({fmt::format("{}", point.means_near)});
       closest.rows.push_back(std::move(cells));
     }
@@ -248,6 +265,7 @@ std::string sweep_json(const std::vector<SweepPoint>& points, const SweepCampaig
                    {"patience", point.variation.patience},
                    {"rho", std::move(rho)},
                    {"reaction_by_impact", point.reaction_by_impact},
+                   {"downtime_shortened", point.downtime_shortened},
                    {"means_near", point.means_near}});
   }
   return to_indented({{"study", "sunset"},

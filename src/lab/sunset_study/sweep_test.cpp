@@ -71,6 +71,7 @@ TEST(Sweep, StopsWhenItIsTold) {
   ASSERT_EQ(json["sweep"].size(), 2u);
   EXPECT_EQ(json["sweep"][0]["relaunch_s"], 0.5);
   EXPECT_TRUE(json["sweep"][0]["rho"].contains("downtime_s"));
+  EXPECT_EQ(json["sweep"][0]["downtime_shortened"], 0) << "one run shows no significant effect";
   EXPECT_GT(sweep_size(campaign), 20u);
   campaign.planners = {"bt"};
   EXPECT_FALSE(sweep(campaign, 1, [](std::uint64_t) { return true; }));

@@ -49,10 +49,9 @@ std::vector<Column> claim_columns(const std::string& group) {
 
 std::vector<std::string> claim_notes() {
   return {
-      "k/n: parts that are significant by themselves; then the deciding part: the weakest, or the "
-      "strongest against the claim. g: Hedges' effect size.",
-      "p by Holm over the table, against the claim where it is contradicted. Open: neither is "
-      "significant at 5 %."};
+      "k/n: significant parts; then the weakest, or the strongest against the claim. g: Hedges' "
+      "effect size.",
+      "p: Holm over its column, against the claim if contradicted. Open: neither below 5 %."};
 }
 
 Table claims_table(const Findings& findings, const std::vector<Ablation>& ablations) {
@@ -78,8 +77,8 @@ Table claims_table(const Findings& findings, const std::vector<Ablation>& ablati
     for (auto& cells : table.rows) cells.resize(table.columns.size(), {"–"});
   }
   table.notes.push_back(
-      "TOST: two means are alike if they differ by less than half of the paper's sd. Reaction "
-      "times of one run are not independent.");
+      "TOST: alike within half the paper's sd. Reaction times of one run count for less: they are "
+      "not independent.");
   return table;
 }
 
