@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <thread>
 
-#include "base/duration_words.h"
 #include "base/live_clock.h"
 #include "base/text_file.h"
 #include "journal/json.h"

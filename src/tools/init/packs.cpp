@@ -1,7 +1,6 @@
 #include "init/packs.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <optional>
 #include <string_view>

@@ -1,7 +1,6 @@
 #include "rule_graph/rule_graph.h"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <variant>
 
