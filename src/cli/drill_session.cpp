@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "base/joined.h"
 #include "base/live_clock.h"
 #include "base/text_file.h"
 #include "journal/json.h"
@@ -26,12 +27,6 @@ constexpr Duration kHears = 3s;    // after that, until culprit must have been h
 std::string boot_id() {
   const auto text = read_text("/proc/sys/kernel/random/boot_id");
   return text ? text->substr(0, text->find('\n')) : "";
-}
-
-std::string listed(const std::vector<std::string>& complaints) {
-  std::string text;
-  for (const std::string& each : complaints) text += (text.empty() ? "" : ", ") + each;
-  return text;
 }
 
 bool ends_at_once(const Fault& fault) { return fault.kind == FaultKind::kRestart; }
@@ -164,7 +159,7 @@ Expected<void> DrillSession::wait_until_well(Until until) {
     if (calm_ && live_now() - *calm_ >= drill::kCalm) return {};
     next_look();
   }
-  return Error{"the robot is not healthy: " + listed(complaints)};
+  return Error{"the robot is not healthy: " + joined(complaints)};
 }
 
 Expected<void> DrillSession::may_inject() const {

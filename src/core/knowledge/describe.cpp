@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "base/duration_words.h"
+#include "base/joined.h"
 #include "base/name_grammar.h"
 
 namespace culprit {
@@ -497,10 +498,7 @@ std::vector<std::string> action_list(const Strategy& strategy, const RuleSet& ru
 
 std::string actions_of(const Strategy& strategy, const RuleSet& rules) {
   const auto actions = action_list(strategy, rules);
-  if (!strategy.has_steps()) return listed(actions);
-  std::string out;
-  for (const std::string& action : actions) out += (out.empty() ? "" : ", ") + action;
-  return out;
+  return strategy.has_steps() ? joined(actions) : listed(actions);
 }
 
 std::string to_string(Probability probability) {
