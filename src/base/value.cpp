@@ -1,7 +1,6 @@
 #include "base/value.h"
 
 #include <charconv>
-#include <cmath>
 
 namespace culprit {
 namespace {

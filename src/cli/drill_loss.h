@@ -5,7 +5,6 @@
 #pragma once
 
 #include <set>
-#include <string>
 
 #include "base/expected.h"
 #include "base/units.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "base/duration_words.h"
+#include "base/joined.h"
 #include "base/live_clock.h"
 #include "base/text_file.h"
 #include "journal/json.h"
@@ -28,12 +28,6 @@ constexpr const char* kNoAnswer = "the culprit of this drill does not answer";
 std::string boot_id() {
   const auto text = read_text("/proc/sys/kernel/random/boot_id");
   return text ? text->substr(0, text->find('\n')) : "";
-}
-
-std::string listed(const std::vector<std::string>& complaints) {
-  std::string text;
-  for (const std::string& each : complaints) text += (text.empty() ? "" : ", ") + each;
-  return text;
 }
 
 bool ends_at_once(const Fault& fault) { return fault.kind == FaultKind::kRestart; }
@@ -209,7 +203,7 @@ Expected<void> DrillSession::wait_until_well(Until until) {
     if (calm_ && live_now() - *calm_ >= drill::kCalm) return {};
     next_look();
   }
-  return Error{"the robot is not healthy: " + listed(complaints)};
+  return Error{"the robot is not healthy: " + joined(complaints)};
 }
 
 Expected<void> DrillSession::may_inject() const {

@@ -8,8 +8,8 @@
 
 namespace culprit::cli {
 
-std::unique_ptr<const RuleSet> load_rules(const std::string& path, Strictness strictness) {
-  auto loaded = live::read_rules(path, strictness, colour_of(STDERR_FILENO));
+std::unique_ptr<const RuleSet> load_rules(const std::string& path) {
+  auto loaded = live::read_rules(path, Strictness::kLenient, colour_of(STDERR_FILENO));
   if (!loaded) {
     fmt::print(stderr, "culprit: {}\n", loaded.error());
     return nullptr;

@@ -9,7 +9,6 @@
 namespace culprit::cli {
 
 // Reads and checks a rule file. Prints its mistakes to stderr; null if any is an error.
-std::unique_ptr<const RuleSet> load_rules(const std::string& path,
-                                          Strictness strictness = Strictness::kLenient);
+std::unique_ptr<const RuleSet> load_rules(const std::string& path);
 
 }  // namespace culprit::cli

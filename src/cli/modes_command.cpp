@@ -1,5 +1,6 @@
 #include <csignal>
 
+#include "base/joined.h"
 #include "base/text_file.h"
 #include "cli/commands.h"
 #include "mode_manager/mode_manager.h"
@@ -16,9 +17,8 @@ struct ModesOptions {
 
 void print(const modes::Model& model) {
   for (const modes::Entity& entity : model.entities) {
-    std::string names;
-    for (const modes::Mode& mode : entity.modes) names += (names.empty() ? "" : ", ") + mode.name;
-    say(stdout, "{:<6}  {}: {}\n", entity.is_system ? "system" : "node", entity.name, names);
+    say(stdout, "{:<6}  {}: {}\n", entity.is_system ? "system" : "node", entity.name,
+        joined(entity.modes, ", ", &modes::Mode::name));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "bag/bag_file.h"
 #include "base/amount.h"
 #include "base/environment.h"
+#include "base/joined.h"
 #include "base/live_clock.h"
 #include "base/name_grammar.h"
 #include "base/text_file.h"
@@ -31,12 +32,6 @@ using replay::RuleOutcome;
 
 double milliseconds_of(Duration duration) { return std::round(seconds(duration) * 1000) / 1000; }
 
-std::string joined(const std::vector<std::string>& parts) {
-  std::string all;
-  for (const std::string& each : parts) all += (all.empty() ? "" : "; ") + each;
-  return all;
-}
-
 // How often and how long, in words.
 std::string firing(const RuleOutcome& outcome, const BagReplay& replay) {
   const std::string first =
@@ -57,7 +52,7 @@ std::string verdict(const RuleOutcome& outcome, const BagReplay& replay) {
     return "could not be judged: " +
            (outcome.why_unknown.empty()
                 ? "its values never covered the windows that it reads, or had no result"
-                : joined(outcome.why_unknown));
+                : joined(outcome.why_unknown, "; "));
   }
   constexpr double kNearlyAll = 0.99;
   const double known = seconds(outcome.known);
@@ -65,7 +60,7 @@ std::string verdict(const RuleOutcome& outcome, const BagReplay& replay) {
   std::string text = "never true";
   if (known < kNearlyAll * all)
     text += fmt::format("; it could be judged for {:.3f} of {:.3f} s", known, all);
-  if (!outcome.why_unknown.empty()) text += "; " + joined(outcome.why_unknown);
+  if (!outcome.why_unknown.empty()) text += "; " + joined(outcome.why_unknown, "; ");
   return text;
 }
 

@@ -14,7 +14,6 @@
 #include "cli/replay_bag.h"
 #include "cli/replay_curves.h"
 #include "journal/json.h"
-#include "knowledge/describe.h"
 #include "replay/hindsight.h"
 #include "replay/replay.h"
 #include "terminal/console.h"

@@ -10,7 +10,6 @@
 #include "json/json.h"
 #include "replay/curves.h"
 #include "terminal/command.h"
-#include "terminal/console.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {

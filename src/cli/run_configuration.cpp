@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/closest.h"
+#include "base/joined.h"
 #include "base/name_grammar.h"
 #include "base/text_file.h"
 #include "base/wrapped.h"
@@ -145,9 +146,7 @@ std::string toml_value(const std::string& value) {
 
 std::string toml_values(const std::vector<std::string>& values) {
   if (values.size() == 1) return toml_value(values.front());
-  std::string list;
-  for (const std::string& each : values) list += (list.empty() ? "" : ", ") + toml_value(each);
-  return "[" + list + "]";
+  return "[" + joined(values, ", ", toml_value) + "]";
 }
 
 std::string default_in_words(const CLI::Option& option) {

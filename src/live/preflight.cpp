@@ -18,7 +18,6 @@
 #include "owners/plugin_index.h"
 #include "owners/remote_program.h"
 #include "owners/units.h"
-#include "robot/inbox.h"
 
 namespace culprit::live {
 namespace {

@@ -1,17 +1,12 @@
 #include "ros_api/decision_message.h"
 
 #include "knowledge/describe.h"
+#include "web/event_json.h"
 
 namespace culprit::ros_api {
 namespace {
 
 constexpr std::string_view kDecision = "culprit_msgs/msg/Decision";
-
-Json names_of_all(const auto& ids, const RuleSet& rules) {
-  Json names = Json::array();
-  for (const auto id : ids) names.push_back(rules[id].name);
-  return names;
-}
 
 Json candidate_message(const Candidate& candidate, const RuleSet& rules) {
   Json message = strategy_message(candidate.strategy, rules);
@@ -53,7 +48,7 @@ struct Additions {
     if constexpr (requires { e.strategy->index; }) {
       if (e.strategy) about(*e.strategy);
     }
-    if constexpr (requires { e.explains; }) message["explains"] = names_of_all(e.explains, rules);
+    if constexpr (requires { e.explains; }) message["explains"] = web::names_of(e.explains, rules);
     if constexpr (requires { e.candidates; }) {
       message["candidates"] = Json::array();
       for (const Candidate& each : e.candidates)
@@ -63,7 +58,7 @@ struct Additions {
   void about(StrategyId strategy) const {
     message["rule"] = rules[rules[strategy].rule].name;
     message["strategy"] = rules[strategy].name;
-    message["components"] = names_of_all(rules[strategy].components, rules);
+    message["components"] = web::names_of(rules[strategy].components, rules);
   }
 };
 
@@ -72,7 +67,7 @@ struct Additions {
 Json strategy_message(StrategyId strategy, const RuleSet& rules) {
   return {{"rule", rules[rules[strategy].rule].name},
           {"name", rules[strategy].name},
-          {"components", names_of_all(rules[strategy].components, rules)},
+          {"components", web::names_of(rules[strategy].components, rules)},
           {"actions", action_list(rules[strategy], rules)},
           {"resolves", nullptr},
           {"cost", nullptr}};

@@ -3,18 +3,13 @@
 #include <algorithm>
 
 #include "knowledge/describe.h"
+#include "web/event_json.h"
 
 namespace culprit::ros_api {
 namespace {
 
 constexpr std::string_view kIncident = "culprit_msgs/msg/Incident";
 constexpr std::string_view kComponent = "culprit_msgs/msg/Component";
-
-Json names_of(const auto& ids, const RuleSet& rules) {
-  Json names = Json::array();
-  for (const auto id : ids) names.push_back(rules[id].name);
-  return names;
-}
 
 // A field that changes with the time alone is no news.
 Json without_time(Json message) {
@@ -69,8 +64,8 @@ Json IncidentWatch::message_of(const Incident& incident, const Manager& manager,
           {"headline", incident.headline},
           {"health", types_.constant(kComponent, "HEALTH_" + health)},
           {"rule", rules[incident.root].name},
-          {"consequences", names_of(incident.consequences, rules)},
-          {"components", names_of(incident.components, rules)},
+          {"consequences", web::names_of(incident.consequences, rules)},
+          {"components", web::names_of(incident.components, rules)},
           {"is_certain", incident.is_certain},
           {"needs_person", incident.needs_person()},
           {"doing", course.doing},

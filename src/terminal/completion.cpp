@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "base/joined.h"
 #include "terminal/help.h"
 #include "terminal/listed.h"
 
@@ -231,9 +232,7 @@ std::string zsh_specs(const CLI::App& command, const std::string& program) {
   std::string out = " \\\n    '(- *)--help[Tell the options]'";
   for (const CLI::Option* option : named_options_of(command)) {
     const auto names = names_of(*option);
-    std::string others;
-    for (const std::string& name : names) others += (others.empty() ? "" : " ") + name;
-    const std::string before = takes_several(*option) ? "*" : "(" + others + ")";
+    const std::string before = takes_several(*option) ? "*" : "(" + joined(names, " ") + ")";
     const std::string value = zsh_value(*option, program);
     for (const std::string& name : names) {
       const char* joint = value.empty() ? "" : name.starts_with("--") ? "=" : "+";

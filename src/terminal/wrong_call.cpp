@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "base/closest.h"
+#include "base/joined.h"
 #include "base/name_grammar.h"
 #include "base/units.h"
 #include "terminal/help.h"
@@ -159,12 +158,6 @@ std::string meant(std::string_view word, const std::vector<std::string_view>& kn
   return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
 
-std::string comma_separated(const std::vector<std::string_view>& words) {
-  std::string out;
-  for (const std::string_view word : words) out += (out.empty() ? "" : ", ") + std::string(word);
-  return out;
-}
-
 // A word with a digit behind its '-' is a number.
 bool is_option(std::string_view word) {
   return word.size() > 1 && word[0] == '-' && (word[1] < '0' || word[1] > '9') && word[1] != '.';
@@ -220,7 +213,7 @@ std::string few_options(const std::vector<std::string>& known) {
     if (each.starts_with("--") && each != "--help" && std::ranges::find(own, each) == own.end())
       own.push_back(each);
   }
-  return own.empty() || own.size() > kFew ? "" : "; it has " + comma_separated(own);
+  return own.empty() || own.size() > kFew ? "" : "; it has " + joined(own);
 }
 
 // The remedy for an option that `command`, with the options `known`, has not: "; test has it".
@@ -248,7 +241,7 @@ std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::s
     return ask(ours);
   if (std::string near = meant(option, {known.begin(), known.end()}); !near.empty()) return near;
   if (const auto parts = commands_with(command, option); !is_program && !parts.empty())
-    return "; it stands behind " + comma_separated(parts);
+    return "; it stands behind " + joined(parts);
   const auto others = commands_with(app, option);
   if (option.starts_with("--") && others.size() == 1)
     return ask(app.get_name() + " " + std::string(others.front()) + " " + option);
@@ -278,7 +271,7 @@ std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line,
     const std::vector<std::string_view> known = names_of(parts);
     const std::string near = meant(word, known);
     return line.command->get_name() + " has no command '" + printable(word) + "'" +
-           (near.empty() ? "; it has " + comma_separated(known) : near);
+           (near.empty() ? "; it has " + joined(known) : near);
   }
   const std::vector<std::string> options = options_of(*line.command);
   const std::string option = unknown_option(options, argc, argv);
@@ -318,8 +311,7 @@ std::string missing(const CLI::RequiredError& error, const CLI::App& command) {
   const std::string text = error.what();
   constexpr std::string_view kRequired = " is required";
   if (text == "A subcommand is required")
-    return command.get_name() +
-           " needs a command: " + comma_separated(names_of(commands_in(command)));
+    return command.get_name() + " needs a command: " + joined(names_of(commands_in(command)));
   constexpr std::string_view kOneOf = "Exactly 1 option from [";
   if (text.starts_with(kOneOf)) {
     const bool is_none = !text.ends_with(" were given");
@@ -513,7 +505,7 @@ std::string words_of_invalid_value(const std::string& text) {
     known.push_back(left.substr(0, comma));
     left = comma == std::string_view::npos ? "" : left.substr(comma + 1);
   }
-  return option + "'" + value + "' is none of " + comma_separated(known) + meant(value, known);
+  return option + "'" + value + "' is none of " + joined(known) + meant(value, known);
 }
 
 Chosen chosen(const CLI::App& app) {

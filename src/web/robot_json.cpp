@@ -1,6 +1,5 @@
 #include "web/robot_json.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 

@@ -1,6 +1,5 @@
 #include <array>
 
-#include "language/checker.h"
 #include "lsp/language_server.h"
 #include "rule_files/rule_files.h"
 #include "rule_graph/draft.h"

@@ -7,7 +7,7 @@
 namespace culprit::alerts {
 namespace {
 
-std::string joined(const std::vector<std::string>& names) {
+std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 10;
   std::string text;
   for (std::size_t i = 0; i < std::min(kMost, names.size()); ++i)
@@ -26,7 +26,7 @@ std::string text_of(const Alert& alert) {
                                            : "",
                       alert.headline, alert.health);
   if (!alert.consequences.empty())
-    text += fmt::format(", so that {} {}", joined(alert.consequences),
+    text += fmt::format(", so that {} {}", some_of(alert.consequences),
                         alert.consequences.size() == 1 ? "fails" : "fail");
   if (is_over) text += fmt::format(", after {:.1f} s", std::max(0.0, alert.ended - alert.began));
   for (const std::string& more : {alert.doing, alert.next}) {

@@ -12,6 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "base/closest.h"
+#include "base/joined.h"
 #include "base/name_grammar.h"
 #include "base/text_file.h"
 
@@ -37,12 +38,6 @@ std::string word_of(const YAML::Node& node, const std::string& what) {
   return node.Scalar();
 }
 
-std::string listed(const std::vector<std::string_view>& words) {
-  std::string list;
-  for (const std::string_view word : words) list += (list.empty() ? "" : ", ") + std::string(word);
-  return list;
-}
-
 // The keys of a mapping are of these, each once.
 void check_keys(const YAML::Node& map, const std::vector<std::string_view>& known) {
   if (!map.IsMap()) refuse(map, "this has to be a mapping: 'key: value'");
@@ -53,7 +48,7 @@ void check_keys(const YAML::Node& map, const std::vector<std::string_view>& know
     if (std::find(known.begin(), known.end(), key) == known.end())
       refuse(entry.first,
              "there is no setting '" + printable(key) + "'; " +
-                 (near.empty() ? "there are " + listed(known) : "did you mean '" + near + "'?"));
+                 (near.empty() ? "there are " + joined(known) : "did you mean '" + near + "'?"));
     if (!seen.insert(key).second) refuse(entry.first, key + " is there twice");
   }
 }

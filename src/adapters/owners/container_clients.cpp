@@ -1,6 +1,5 @@
 #include "owners/container_clients.h"
 
-#include "base/live_clock.h"
 #include "base/units.h"
 #include "owners/parameter_file.h"
 #include "owners/plugin_index.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <poll.h>
@@ -11,6 +10,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "base/environment.h"
 #include "base/live_clock.h"
 #include "json/json.h"
 #include "owners/file_descriptor.h"
@@ -24,23 +24,18 @@ using Activity = UnitState::Activity;
 
 constexpr std::size_t kLongestAnswer = 4 << 20;  // bytes: a list of a thousand containers
 
-std::string variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
-
 // Where the engine listens: from the same place as its own tools, or where its packages put it.
 // Errors: the engine is set to be on another machine.
 Expected<std::string> socket_of(EngineContainer::Engine engine) {
   const bool is_docker = engine == EngineContainer::Engine::kDocker;
   const char* name = is_docker ? "DOCKER_HOST" : "CONTAINER_HOST";
   constexpr std::string_view kUnix = "unix://";
-  const std::string told = variable(name);
+  const std::string told = environment(name);
   if (told.starts_with(kUnix)) return told.substr(kUnix.size());
   if (!told.empty())
     return Error{std::string(name) + " is " + told + ", and culprit uses a socket of this machine"};
   if (is_docker) return std::string("/var/run/docker.sock");
-  const std::string own = variable("XDG_RUNTIME_DIR");
+  const std::string own = environment("XDG_RUNTIME_DIR");
   if (geteuid() == 0 || own.empty()) return std::string("/run/podman/podman.sock");
   return own + "/podman/podman.sock";
 }

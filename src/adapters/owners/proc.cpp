@@ -250,6 +250,11 @@ std::optional<Time> started_at(int pid) {
   return Time(std::chrono::nanoseconds(*ticks * (1'000'000'000 / in_second)) - sleep);
 }
 
+bool was_there(int pid, Time known) {
+  const auto started = started_at(pid);
+  return started && *started <= known;
+}
+
 std::string value_of_variable(int pid, const std::string& prefix) {
   if (!is_of_own_user(pid)) return "";
   std::ifstream environment("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);

@@ -41,6 +41,9 @@ Origin origin_of(int pid);
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);
 
+// Whether the process of this number began before `known`: numbers are reused.
+bool was_there(int pid, Time known);
+
 // All processes that are visible.
 std::vector<int> all_processes();
 

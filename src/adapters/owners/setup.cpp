@@ -6,8 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/invariant.h"
-#include "base/live_clock.h"
 #include "owners/piped_program.h"
 #include "owners/spawn.h"
 

@@ -1,6 +1,5 @@
 #include "owners/systemd_bus.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <climits>
 #include <csignal>

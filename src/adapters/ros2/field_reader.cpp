@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "base/joined.h"
 #include "ros2/names.h"
 
 namespace culprit::ros2 {
@@ -83,10 +84,7 @@ Value read_value(CdrReader& reader, Primitive primitive) {
 }
 
 std::string field_names(const MessageDefinition& definition) {
-  std::string names;
-  for (const FieldDefinition& field : definition.fields) {
-    names += (names.empty() ? "" : ", ") + field.name;
-  }
+  const std::string names = joined(definition.fields, ", ", &FieldDefinition::name);
   return names.empty() ? "none" : names;
 }
 

@@ -1,6 +1,5 @@
 #include "ros2/participant.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <unistd.h>

@@ -1,7 +1,5 @@
 #include "simulation/simulated_robot.h"
 
-#include <algorithm>
-
 #include "simulation/mode_manager.h"
 #include "simulation/node.h"
 #include "simulation/topic.h"

@@ -23,6 +23,8 @@ std::string describe(const Departures::Departure& departure, const std::string& 
 
 // "87.3 %", "60 %"
 std::string to_string(Probability probability);
+// "0.70"
+std::string two_decimals(double value);
 
 // "a, b and c"
 std::string listed(const std::vector<std::string>& items);

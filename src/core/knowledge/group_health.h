@@ -5,7 +5,6 @@
 // kGroupSettles, which is longer than a Nav2 manager needs to notice a broken bond (4 s).
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <string_view>

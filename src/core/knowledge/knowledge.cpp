@@ -10,32 +10,17 @@ namespace culprit {
 namespace {
 
 bool was_read(const Input& input, const Discovered& discovered) {
-  switch (input.kind) {
-    case Input::Kind::kRate:
-    case Input::Kind::kAge:
-    case Input::Kind::kPhi:
-    case Input::Kind::kLoss:
-    case Input::Kind::kAlive:
-    case Input::Kind::kCpu:
-    case Input::Kind::kMemory:
-    case Input::Kind::kGoals:
-    case Input::Kind::kGoalAge:
-    case Input::Kind::kLogs:
+  switch (input.subject()) {
+    case Input::Subject::kTopic:
       return false;
-    case Input::Kind::kLifecycle:
-      return discovered.was_lifecycle_read(input.component);
-    case Input::Kind::kParameter:
+    case Input::Subject::kComponent:
+      return input.kind == Input::Kind::kLifecycle &&
+             discovered.was_lifecycle_read(input.component);
+    case Input::Subject::kParameter:
       return discovered.was_read(input.parameter);
-    case Input::Kind::kLevel:
+    case Input::Subject::kDiagnostic:
       return discovered.was_read(input.diagnostic);
-    case Input::Kind::kSignal:
-    case Input::Kind::kMean:
-    case Input::Kind::kMin:
-    case Input::Kind::kMax:
-    case Input::Kind::kStddev:
-    case Input::Kind::kChanged:
-    case Input::Kind::kIsNan:
-    case Input::Kind::kFrozen:
+    case Input::Subject::kSignal:
       return discovered.was_read(input.signal);
   }
   return false;
@@ -109,34 +94,19 @@ std::string Knowledge::ClockStep::in_words() const {
 }
 
 std::string value_name(const Input& input, const RuleSet& rules) {
-  switch (input.kind) {
-    case Input::Kind::kRate:
-    case Input::Kind::kAge:
-    case Input::Kind::kPhi:
-    case Input::Kind::kLoss:
-    case Input::Kind::kAlive:
-    case Input::Kind::kCpu:
-    case Input::Kind::kMemory:
-    case Input::Kind::kGoals:
-    case Input::Kind::kGoalAge:
-    case Input::Kind::kLogs:
+  switch (input.subject()) {
+    case Input::Subject::kTopic:
       return "";
-    case Input::Kind::kLifecycle:
-      return "lifecycle " + rules[input.component].name;
-    case Input::Kind::kParameter: {
+    case Input::Subject::kComponent:
+      return input.kind == Input::Kind::kLifecycle ? "lifecycle " + rules[input.component].name
+                                                   : "";
+    case Input::Subject::kParameter: {
       const Parameter& parameter = rules[input.parameter];
       return "parameter " + rules[parameter.component].name + " " + parameter.name;
     }
-    case Input::Kind::kLevel:
+    case Input::Subject::kDiagnostic:
       return "diagnostic " + rules.diagnostics[input.diagnostic.index].name;
-    case Input::Kind::kSignal:
-    case Input::Kind::kMean:
-    case Input::Kind::kMin:
-    case Input::Kind::kMax:
-    case Input::Kind::kStddev:
-    case Input::Kind::kChanged:
-    case Input::Kind::kIsNan:
-    case Input::Kind::kFrozen:
+    case Input::Subject::kSignal:
       return "signal " + rules[input.signal].name;
   }
   return "";

@@ -24,33 +24,8 @@ constexpr double kIsWithin = -0.4;
 constexpr double kIsBeyond = 2;
 
 bool reads_value(const Input& input) {
-  using Kind = Input::Kind;
-  switch (input.kind) {
-    case Kind::kRate:
-    case Kind::kAge:
-    case Kind::kPhi:
-    case Kind::kLoss:
-    case Kind::kAlive:
-    case Kind::kLifecycle:
-    case Kind::kParameter:
-    case Kind::kCpu:
-    case Kind::kMemory:
-    case Kind::kGoals:
-    case Kind::kGoalAge:
-    case Kind::kLogs:
-      return false;
-    case Kind::kSignal:
-    case Kind::kLevel:
-    case Kind::kMean:
-    case Kind::kMin:
-    case Kind::kMax:
-    case Kind::kStddev:
-    case Kind::kChanged:
-    case Kind::kIsNan:
-    case Kind::kFrozen:
-      return true;
-  }
-  return true;
+  return input.subject() == Input::Subject::kSignal ||
+         input.subject() == Input::Subject::kDiagnostic;
 }
 
 // The diagnostic status that carries the value; empty: another source.

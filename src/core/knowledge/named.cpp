@@ -23,32 +23,16 @@ class Finder {
  private:
   void look_at(InputId id) {
     const Input& input = knowledge_.rules[id];
-    switch (input.kind) {
-      case Input::Kind::kRate:
-      case Input::Kind::kAge:
-      case Input::Kind::kPhi:
-      case Input::Kind::kLoss:
-      case Input::Kind::kGoals:
-      case Input::Kind::kGoalAge:
+    switch (input.subject()) {
+      case Input::Subject::kTopic:
         return add(input.topic, knowledge_.discovered.has(input.topic));
-      case Input::Kind::kAlive:
-      case Input::Kind::kLifecycle:
-      case Input::Kind::kCpu:
-      case Input::Kind::kMemory:
-      case Input::Kind::kLogs:
+      case Input::Subject::kComponent:
         return;
-      case Input::Kind::kParameter:
+      case Input::Subject::kParameter:
         return add(input.parameter, knowledge_.components[input.parameter].has_value());
-      case Input::Kind::kLevel:
+      case Input::Subject::kDiagnostic:
         return add(input.diagnostic, knowledge_.signals[id].known);
-      case Input::Kind::kSignal:
-      case Input::Kind::kMean:
-      case Input::Kind::kMin:
-      case Input::Kind::kMax:
-      case Input::Kind::kStddev:
-      case Input::Kind::kChanged:
-      case Input::Kind::kIsNan:
-      case Input::Kind::kFrozen:
+      case Input::Subject::kSignal:
         return add(input.signal, is_read(id, input.signal));
     }
   }

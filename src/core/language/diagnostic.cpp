@@ -1,7 +1,6 @@
 #include "language/diagnostic.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 
 namespace culprit {

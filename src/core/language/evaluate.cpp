@@ -1,6 +1,5 @@
 #include "language/evaluate.h"
 
-#include <array>
 #include <cmath>
 #include <cstring>
 

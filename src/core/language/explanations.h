@@ -1,7 +1,6 @@
 // The explanation of each diagnostic. The source is docs/diagnostics.md, which is compiled in: there is no second text.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "language/likely_slips.h"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <set>
 #include <string_view>

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 
+#include "base/joined.h"
 #include "language/expression_parser.h"
 #include "language/foreign_words.h"
 
@@ -446,8 +447,7 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
     return fail(code, token.span, std::string(token.text) + " is given twice", "keep one of them");
   }
   if (is_separator(token)) return fail_token(token, "", "");
-  std::string list;
-  for (const std::string_view word : known) list += (list.empty() ? "" : ", ") + std::string(word);
+  const std::string list = joined(known);
   std::string near = upper_case(token.text);
   const bool is_known = std::find(known.begin(), known.end(), near) != known.end();
   const std::string_view foreign =

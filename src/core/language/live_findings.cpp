@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/joined.h"
+
 namespace culprit {
 namespace {
 
 constexpr const char* kTick = " ✓";
-
-std::string joined(const std::set<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
-}
 
 std::string hertz(double rate) {
   char text[32];

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "language/component_reader.h"
 #include "language/declaration_reader.h"
 #include "language/line_reader.h"
 #include "language/reuse/statements.h"

@@ -191,25 +191,17 @@ class Producers {
 // The component whose state, samples or log lines the input is; empty: the rules do not say.
 std::optional<ComponentId> owner_of(const Input& input, const RuleSet& rules) {
   using enum Input::Kind;
-  switch (input.kind) {
-    case kAlive:
-    case kLifecycle:
-    case kCpu:
-    case kMemory:
-    case kLogs:
+  switch (input.subject()) {
+    case Input::Subject::kComponent:
       return input.component;
-    case kRate:
-    case kAge:
-    case kPhi:
-    case kLoss:
-      break;
-    case kParameter:
-    case kLevel:
-    case kGoals:
-    case kGoalAge:
-      return std::nullopt;
-    default:
+    case Input::Subject::kSignal:
       return publisher_of(input.signal, rules);
+    case Input::Subject::kParameter:
+    case Input::Subject::kDiagnostic:
+      return std::nullopt;
+    case Input::Subject::kTopic:
+      if (input.kind == kGoals || input.kind == kGoalAge) return std::nullopt;
+      break;
   }
   const Topic& topic = rules[input.topic];
   if (topic.publisher) return topic.publisher;

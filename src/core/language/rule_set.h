@@ -177,6 +177,10 @@ struct Input {
     kGoalAge,  // topic of an action's status: since when its oldest goal runs
     kLogs      // component, log level, over window: lines of its log at that level or above
   };
+  // The kind of thing whose value it is; the id of that one is set below.
+  enum class Subject : std::uint8_t { kSignal, kTopic, kComponent, kParameter, kDiagnostic };
+  constexpr Subject subject() const;
+
   Kind kind = Kind::kSignal;
   Type type = Type::kDouble;
   TopicId topic;
@@ -196,6 +200,38 @@ struct Input {
 
   std::vector<RuleId> readers;  // the rules whose trigger reads it
 };
+
+constexpr Input::Subject Input::subject() const {
+  switch (kind) {
+    case Kind::kRate:
+    case Kind::kAge:
+    case Kind::kPhi:
+    case Kind::kLoss:
+    case Kind::kGoals:
+    case Kind::kGoalAge:
+      return Subject::kTopic;
+    case Kind::kAlive:
+    case Kind::kLifecycle:
+    case Kind::kCpu:
+    case Kind::kMemory:
+    case Kind::kLogs:
+      return Subject::kComponent;
+    case Kind::kParameter:
+      return Subject::kParameter;
+    case Kind::kLevel:
+      return Subject::kDiagnostic;
+    case Kind::kSignal:
+    case Kind::kMean:
+    case Kind::kMin:
+    case Kind::kMax:
+    case Kind::kStddev:
+    case Kind::kChanged:
+    case Kind::kIsNan:
+    case Kind::kFrozen:
+      break;
+  }
+  return Subject::kSignal;
+}
 
 struct Adaptation {
   ComponentId component;

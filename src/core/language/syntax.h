@@ -12,7 +12,6 @@
 
 #include "base/seldom.h"
 #include "base/units.h"
-#include "base/value.h"
 #include "language/source.h"
 
 namespace culprit::syntax {

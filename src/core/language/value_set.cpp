@@ -1,7 +1,6 @@
 #include "language/value_set.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/invariant.h"

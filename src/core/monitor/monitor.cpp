@@ -42,11 +42,6 @@ bool counts_samples(const Input& input) {
   return input.kind == Kind::kRate || input.kind == Kind::kLoss || input.kind == Kind::kGoals;
 }
 
-bool reads_topic(const Input& input) {
-  return counts_samples(input) || input.kind == Kind::kAge || input.kind == Kind::kPhi ||
-         input.kind == Kind::kGoalAge;
-}
-
 }  // namespace
 
 Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time discovered)
@@ -71,13 +66,8 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
     const InputId id(i);
     const bool counts_events = input.kind == Kind::kGoals || input.kind == Kind::kLogs;
     write_.signals.set_latency(id, counts_events ? input.window : rules.cycle);
-    switch (input.kind) {
-      case Kind::kRate:
-      case Kind::kAge:
-      case Kind::kPhi:
-      case Kind::kLoss:
-      case Kind::kGoals:
-      case Kind::kGoalAge:
+    switch (input.subject()) {
+      case Input::Subject::kTopic:
         topics_[input.topic.index].inputs.push_back(id);
         topics_[input.topic.index].needs_phi |= input.kind == Kind::kPhi;
         if (input.kind == Kind::kRate || input.kind == Kind::kGoals)
@@ -87,32 +77,21 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
             derived_[i].deviations.push_back(monitor::PhiAccrual::deviations(threshold));
         }
         break;
-      case Kind::kSignal:
-      case Kind::kMean:
-      case Kind::kMin:
-      case Kind::kMax:
-      case Kind::kStddev:
-      case Kind::kChanged:
-      case Kind::kIsNan:
-      case Kind::kFrozen:
+      case Input::Subject::kSignal:
         signals_[input.signal.index].inputs.push_back(id);
         if (input.window > Duration::zero() && input.kind != Kind::kFrozen) {
           const Duration longest_pause = rules[input.signal].stale.value_or(input.window);
           derived_[i].values.emplace(statistic(input.kind), input.window, longest_pause);
         }
         break;
-      case Kind::kAlive:
-      case Kind::kLifecycle:
-      case Kind::kCpu:
-      case Kind::kMemory:
-      case Kind::kLogs:
+      case Input::Subject::kComponent:
         if (input.kind == Kind::kLogs) derived_[i].count = monitor::SlidingCount(input.window);
         component_inputs_[input.component.index].push_back(id);
         break;
-      case Kind::kParameter:
+      case Input::Subject::kParameter:
         parameter_inputs_[input.parameter.index].push_back(id);
         break;
-      case Kind::kLevel:
+      case Input::Subject::kDiagnostic:
         diagnostic_inputs_[input.diagnostic.index].push_back(id);
         break;
     }
@@ -266,7 +245,8 @@ void Monitor::put_held(InputId id) {
 
 void Monitor::update(InputId id, Time now) {
   const Input& input = knowledge_.rules[id];
-  if (reads_topic(input) && topics_[input.topic.index].held) return put_held(id);
+  if (input.subject() == Input::Subject::kTopic && topics_[input.topic.index].held)
+    return put_held(id);
   Slot value;
   switch (input.kind) {
     case Kind::kRate:

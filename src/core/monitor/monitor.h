@@ -9,10 +9,8 @@
 
 #include <algorithm>
 #include <set>
-#include <span>
 #include <string>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "knowledge/deadlines.h"

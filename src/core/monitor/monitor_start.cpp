@@ -24,11 +24,6 @@ namespace {
 
 using Kind = Input::Kind;
 
-bool is_rhythm(const Input& input) {
-  return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi ||
-         input.kind == Kind::kLoss || input.kind == Kind::kGoals || input.kind == Kind::kGoalAge;
-}
-
 }  // namespace
 
 void Monitor::expect(const KnownRobot& known) {
@@ -118,7 +113,8 @@ bool Monitor::is_there(InputId id) const {
   const Input& input = knowledge_.rules[id];
   const bool is_measured =
       input.kind == Kind::kCpu || input.kind == Kind::kMemory || input.kind == Kind::kLogs;
-  if (is_rhythm(input) || input.kind == Kind::kAlive || is_measured) return true;
+  if (input.subject() == Input::Subject::kTopic || input.kind == Kind::kAlive || is_measured)
+    return true;
   if (input.kind == Kind::kLifecycle || input.kind == Kind::kParameter ||
       input.kind == Kind::kLevel)
     return knowledge_.signals[id].known;

@@ -7,7 +7,6 @@
 
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "robot/observation.h"
 

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "base/environment.h"
+#include "base/joined.h"
 #include "base/text_file.h"
 #include "demo/demo_setup.h"
 #include "demo/rover_demo.h"
@@ -107,10 +108,9 @@ Expected<std::vector<Play>> Sunset::plays_for(const DemoOptions& options) {
   return std::vector<Play>{*play};
 }
 
-std::string joined(const std::vector<std::string>& items) {
-  std::string out;
-  for (const std::string& item : items) out += (out.empty() ? "" : ", ") + item;
-  return out.empty() ? "none" : out;
+std::string names_or_none(const std::vector<std::string>& items) {
+  const std::string all = joined(items);
+  return all.empty() ? "none" : all;
 }
 
 Json to_json(const std::vector<PlayOutcome>& outcomes) {
@@ -144,15 +144,15 @@ void print_outcome(const PlayOutcome& o) {
   std::string reactions;
   for (const double t : o.reaction_times)
     reactions += fmt::format("{}{:.2f}", reactions.empty() ? "" : ", ", t);
-  say(stdout, "\n  faults                     {}\n", joined(o.faults));
-  say(stdout, "  failures                   {}\n", joined(o.failures));
+  say(stdout, "\n  faults                     {}\n", names_or_none(o.faults));
+  say(stdout, "  failures                   {}\n", names_or_none(o.failures));
   say(stdout, "  strategies executed        {} ({} resolved a failure)\n", o.strategies.size(),
       o.strategies_succeeded);
   say(stdout, "  unnecessary redeployments  {}\n", o.unnecessary_redeployments);
   say(stdout, "  reaction times             {} s\n", reactions.empty() ? "-" : reactions);
   say(stdout, "  downtime                   {:.2f} s\n", o.downtime);
   if (o.mean_iou) say(stdout, "  mean IoU                   {:.2f}\n", *o.mean_iou);
-  if (!o.blamed.empty()) say(stdout, "  held responsible           {}\n", joined(o.blamed));
+  if (!o.blamed.empty()) say(stdout, "  held responsible           {}\n", names_or_none(o.blamed));
   if (!o.is_resolved()) say(stdout, "  NOT RESOLVED               {}\n", o.complaint);
 }
 
@@ -258,7 +258,7 @@ Expected<std::vector<PlayOutcome>> play_each(Demo& demo, const Plays& plays) {
   std::vector<PlayOutcome> outcomes;
   for (const auto& play : plays) {
     say(stdout, "\nScenario {} of {}: {}\nInjecting {}\n", outcomes.size() + 1, plays.size(),
-        play.name, joined(play.fault_names()));
+        play.name, names_or_none(play.fault_names()));
     auto outcome = demo.play(play);
     if (!outcome) return Error{outcome.error()};
     print_outcome(*outcome);

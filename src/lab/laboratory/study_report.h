@@ -2,7 +2,6 @@
 // program writes (docs/study-files.md).
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <utility>
 
-#include "language/rule_set.h"
 #include "manager/manager.h"
 #include "simulation/node.h"
 

@@ -22,7 +22,6 @@
 #include <vector>
 
 #include "knowledge/event.h"
-#include "language/evaluate.h"
 #include "reference/options.h"
 #include "reference/sent_rules.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/ros_names.h"
 #include "base/tool_names.h"
 #include "json/json.h"
 #include "knowledge/component_states.h"

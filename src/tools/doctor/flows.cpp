@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 
-#include "base/ros_names.h"
 #include "base/tool_names.h"
 #include "doctor/examine.h"
 #include "doctor/stamped_types.h"

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "base/mutex.h"
 #include "doctor/picture.h"
 #include "ros2/subscription.h"
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/live_clock.h"
-#include "base/tool_names.h"
 #include "doctor/asking.h"
 #include "doctor/clock_listening.h"
 #include "doctor/held_up.h"

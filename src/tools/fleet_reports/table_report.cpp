@@ -5,9 +5,11 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include "base/xml.h"
 #include "fleet/clean.h"
 #include "fleet/incident_number.h"
 #include "journal/json.h"
+#include "language/source.h"
 
 namespace culprit::fleet {
 namespace {
@@ -50,20 +52,13 @@ std::string cell_text(const Field& field, Kind kind, double now) {
   return "";
 }
 
-// As wide as it looks: characters, not bytes.
-std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  }));
-}
-
 bool is_right_aligned(Kind kind) {
   return kind == Kind::kCount || kind == Kind::kNumber || kind == Kind::kSeconds ||
          kind == Kind::kPercent;
 }
 
 void append_padded(std::string& line, const std::string& cell, std::size_t width, Kind kind) {
-  const std::string blanks(width - std::min(width, width_of(cell)), ' ');
+  const std::string blanks(width - std::min<std::size_t>(width, character_count(cell)), ' ');
   line += is_right_aligned(kind) ? blanks + cell : cell + blanks;
   line += "  ";
 }
@@ -83,36 +78,13 @@ std::string table_text(const Table& table, double now) {
     std::string line = "  ";
     for (std::size_t c = 0; c < columns.size(); ++c) {
       std::size_t width = 0;
-      for (const auto& each : lines) width = std::max(width, width_of(each[c]));
+      for (const auto& each : lines) width = std::max<std::size_t>(width, character_count(each[c]));
       append_padded(line, cells[c], width, columns[c].kind);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
   return text;
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
 }
 
 Json cell_json(const Field& field, Kind kind) {
@@ -173,11 +145,11 @@ std::string to_html(const Report& report, double now) {
       "@media (prefers-color-scheme: dark) {{ body {{ color: #e6edf3; background: #0d1117 }} "
       "th, td {{ border-color: #30363d }} }}\n"
       "</style></head><body>\n<h1>{0}</h1>\n<p>{1} UTC</p>\n",
-      escaped(report.title), time_text(now));
+      xml_escaped(report.title), time_text(now));
   for (const Table& table : report.tables) {
-    html += "<h2>" + escaped(table.query.title) + "</h2>\n";
+    html += "<h2>" + xml_escaped(table.query.title) + "</h2>\n";
     if (table.rows.empty()) {
-      html += "<p>" + escaped(table.query.nothing) + "</p>\n";
+      html += "<p>" + xml_escaped(table.query.nothing) + "</p>\n";
       continue;
     }
     html += "<table><thead><tr>";
@@ -185,14 +157,15 @@ std::string to_html(const Report& report, double now) {
       return is_right_aligned(kind) ? " class=\"number\"" : "";
     };
     for (const Column& column : table.query.columns)
-      html +=
-          fmt::format("<th scope=\"col\"{}>{}</th>", class_of(column.kind), escaped(column.title));
+      html += fmt::format("<th scope=\"col\"{}>{}</th>", class_of(column.kind),
+                          xml_escaped(column.title));
     html += "</tr></thead><tbody>\n";
     for (const Row& row : table.rows) {
       html += "<tr>";
       for (std::size_t c = 0; c < row.size(); ++c) {
         const Kind kind = table.query.columns[c].kind;
-        html += fmt::format("<td{}>{}</td>", class_of(kind), escaped(cell_text(row[c], kind, now)));
+        html +=
+            fmt::format("<td{}>{}</td>", class_of(kind), xml_escaped(cell_text(row[c], kind, now)));
       }
       html += "</tr>\n";
     }

@@ -6,7 +6,6 @@
 // their words. Comments are kept.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -271,15 +271,8 @@ std::vector<LayoutPlot> plots_of(const RuleSet& rules) {
   };
   for (const Input& input : rules.inputs) {
     using enum Input::Kind;
-    switch (input.kind) {
-      case kSignal:
-      case kMean:
-      case kMin:
-      case kMax:
-      case kStddev:
-      case kChanged:
-      case kIsNan:
-      case kFrozen: {
+    switch (input.subject()) {
+      case Input::Subject::kSignal: {
         const std::string& name = rules[input.signal].name;
         if (std::holds_alternative<GroupId>(rules[input.signal].source)) break;
         const bool is_limited = input.kind == kSignal || input.kind == kMean ||
@@ -287,25 +280,22 @@ std::vector<LayoutPlot> plots_of(const RuleSet& rules) {
         add(topic_of("signals", name), name, input, is_limited);
         break;
       }
-      case kAge:
-      case kRate:
-      case kPhi:
-      case kLoss:
-        if (!rules[input.topic].publisher)
+      case Input::Subject::kTopic:
+        if (input.kind != kGoals && input.kind != kGoalAge && !rules[input.topic].publisher)
           add(topic_of("gaps", rules[input.topic].name),
               "seconds between messages of " + rules[input.topic].name, input, input.kind == kAge);
         break;
-      case kLevel:
+      case Input::Subject::kDiagnostic:
         add(topic_of("levels", rules.diagnostics[input.diagnostic.index].name),
             describe(input, rules), input, true);
         break;
-      case kParameter: {
+      case Input::Subject::kParameter: {
         const Parameter& of = rules[input.parameter];
         add(topic_of("parameters", rules[of.component].name + "_" + of.name),
             describe(input, rules), input, true);
         break;
       }
-      default:
+      case Input::Subject::kComponent:
         break;
     }
   }

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "base/joined.h"
 #include "base/xml.h"
 #include "incident_reports/curve_plot.h"
 #include "incident_reports/evidence_part.h"
@@ -186,15 +187,9 @@ std::string requests(const std::vector<Request>& all) {
   return "<h2>Requests and answers</h2>\n" + table_of({"time", "request", "answer", "after"}, rows);
 }
 
-std::string comma_separated(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
-}
-
 std::string facts_of_incident(const PageContent& content) {
   const Incident& incident = content.incident;
-  std::string suffered = xml_escaped(comma_separated(incident.consequences));
+  std::string suffered = xml_escaped(joined(incident.consequences));
   if (suffered.empty()) suffered = "nothing else";
   std::string facts =
       fact("robot", xml_escaped(content.robot)) +
@@ -203,7 +198,7 @@ std::string facts_of_incident(const PageContent& content) {
       fact("lasted", lasting_text(incident.seconds) + (incident.is_over ? "" : " so far")) +
       fact("what helped", xml_escaped(outcome_of(incident)));
   if (!content.recordings.empty())
-    facts += fact("recorded", xml_escaped(comma_separated(content.recordings)));
+    facts += fact("recorded", xml_escaped(joined(content.recordings)));
   return facts;
 }
 
@@ -234,8 +229,7 @@ std::string course_over_time(const PageContent& content) {
 
 std::string incident_page(const PageContent& content) {
   const Incident& incident = content.incident;
-  const std::string about =
-      content.whole ? comma_separated(content.recordings) : cause_of(incident);
+  const std::string about = content.whole ? joined(content.recordings) : cause_of(incident);
   const std::string title = xml_escaped(about) + ", " + on_calendar(incident.began) + " " +
                             formatted(incident.began, "%H:%M:%S");
   const std::string facts =

@@ -221,42 +221,27 @@ class CurveReader {
   void follow(const Rule& rule) {
     for (const InputId id : rule.inputs) {
       const Input& input = wish_.rules[id];
-      switch (input.kind) {
-        case Input::Kind::kSignal:
-          limit(follow_signal(rule, input.signal), input);
+      switch (input.subject()) {
+        case Input::Subject::kSignal: {
+          const std::size_t place = follow_signal(rule, input.signal);
+          if (input.kind == Input::Kind::kSignal) limit(place, input);
           break;
-        case Input::Kind::kMean:
-        case Input::Kind::kMin:
-        case Input::Kind::kMax:
-        case Input::Kind::kStddev:
-        case Input::Kind::kChanged:
-        case Input::Kind::kIsNan:
-        case Input::Kind::kFrozen:
-          follow_signal(rule, input.signal);
+        }
+        case Input::Subject::kTopic: {
+          if (input.kind == Input::Kind::kGoals || input.kind == Input::Kind::kGoalAge) break;
+          const std::size_t place = follow_rhythm(rule, input.topic);
+          if (input.kind == Input::Kind::kAge) limit(place, input);
           break;
-        case Input::Kind::kAge:
-          limit(follow_rhythm(rule, input.topic), input);
-          break;
-        case Input::Kind::kRate:
-        case Input::Kind::kPhi:
-        case Input::Kind::kLoss:
-          follow_rhythm(rule, input.topic);
-          break;
-        case Input::Kind::kParameter:
+        }
+        case Input::Subject::kParameter:
           limit(place_of(rule, parameters_, input.parameter.index, describe(input, wish_.rules)),
                 input);
           break;
-        case Input::Kind::kLevel:
+        case Input::Subject::kDiagnostic:
           limit(place_of(rule, levels_, input.diagnostic.index, describe(input, wish_.rules)),
                 input);
           break;
-        case Input::Kind::kAlive:
-        case Input::Kind::kLifecycle:
-        case Input::Kind::kCpu:
-        case Input::Kind::kMemory:
-        case Input::Kind::kGoals:
-        case Input::Kind::kGoalAge:
-        case Input::Kind::kLogs:
+        case Input::Subject::kComponent:
           break;  // no numbers; the marks tell
       }
     }

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "base/invariant.h"
+#include "base/joined.h"
 
 namespace culprit::init {
 namespace {
@@ -42,9 +43,7 @@ std::string text(const std::string& content) {
 }
 
 std::string row(const std::vector<std::string>& arguments) {
-  std::string all;
-  for (const std::string& each : arguments) all += (all.empty() ? "" : " ") + argument(each);
-  return all;
+  return joined(arguments, " ", argument);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "init/look.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <set>
 #include <thread>

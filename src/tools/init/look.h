@@ -1,9 +1,6 @@
 // Watches a robot for as long as a draft of its rules needs. Changes nothing.
 #pragma once
 
-#include <memory>
-
-#include "base/expected.h"
 #include "init/robot_profile.h"
 #include "link/survey.h"
 

@@ -1,7 +1,6 @@
 #include "init/movement.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -9,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "base/name_grammar.h"
-#include "base/ros_names.h"
 #include "base/tool_names.h"
 #include "init/measures.h"
 

@@ -1,7 +1,6 @@
 #include "init/packs.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <optional>
 #include <string_view>
@@ -100,13 +99,12 @@ class PackChoice {
     return found != seen_.robot.services.end() && found->second == type;
   }
 
-  // The topics that `node` publishes, it alone unless `shared`.
-  std::vector<std::string> topics_of(const std::string& node, const std::string& type,
-                                     bool shared = false) const {
+  // The topics that `node` alone publishes.
+  std::vector<std::string> topics_of(const std::string& node, const std::string& type) const {
     std::vector<std::string> topics;
     for (const auto& each : seen_.robot.topics) {
       if (each.second.type == type && is_valid_topic_name(each.first) &&
-          each.second.publishers.contains(node) && (shared || each.second.publishers.size() == 1))
+          each.second.publishers.contains(node) && each.second.publishers.size() == 1)
         topics.push_back(each.first);
     }
     return topics;

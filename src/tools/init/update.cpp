@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "base/ros_names.h"
-#include "base/tool_names.h"
 #include "base/units.h"
 #include "init/marks.h"
 #include "init/packs.h"

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "base/name_grammar.h"
-#include "base/ros_names.h"
 #include "base/tool_names.h"
 #include "base/units.h"
 #include "init/measures.h"

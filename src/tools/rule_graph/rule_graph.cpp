@@ -1,7 +1,6 @@
 #include "rule_graph/rule_graph.h"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <variant>
 
@@ -33,38 +32,23 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
   const auto of_parameter = [&](ParameterId id) { all.push_back(rules[id].component); };
   for (const InputId id : rule.inputs) {
     const Input& input = rules[id];
-    switch (input.kind) {
-      case Input::Kind::kAlive:
-      case Input::Kind::kLifecycle:
-      case Input::Kind::kCpu:
-      case Input::Kind::kMemory:
-      case Input::Kind::kLogs:
+    switch (input.subject()) {
+      case Input::Subject::kComponent:
         all.push_back(input.component);
         break;
-      case Input::Kind::kParameter:
+      case Input::Subject::kParameter:
         of_parameter(input.parameter);
         break;
-      case Input::Kind::kSignal:
-      case Input::Kind::kMean:
-      case Input::Kind::kMin:
-      case Input::Kind::kMax:
-      case Input::Kind::kStddev:
-      case Input::Kind::kChanged:
-      case Input::Kind::kIsNan:
-      case Input::Kind::kFrozen:
+      case Input::Subject::kSignal:
         if (const auto* parameter = std::get_if<ParameterId>(&rules[input.signal].source))
           of_parameter(*parameter);
         if (const auto publisher = publisher_of(input.signal, rules)) all.push_back(*publisher);
         break;
-      case Input::Kind::kRate:
-      case Input::Kind::kAge:
-      case Input::Kind::kPhi:
-      case Input::Kind::kLoss:
+      case Input::Subject::kTopic:
+        if (input.kind == Input::Kind::kGoals || input.kind == Input::Kind::kGoalAge) break;
         if (const auto& publisher = rules[input.topic].publisher) all.push_back(*publisher);
         break;
-      case Input::Kind::kLevel:
-      case Input::Kind::kGoals:
-      case Input::Kind::kGoalAge:
+      case Input::Subject::kDiagnostic:
         break;
     }
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/joined.h"
 #include "language/diagnostic.h"
 #include "language/expression_parser.h"
 #include "language/syntax.h"
@@ -213,9 +214,7 @@ std::string pointer(const std::string& at, std::string_view name) {
 std::string nearest(std::string_view word, const std::vector<std::string_view>& known) {
   const std::string near = closest(word, known);
   if (!near.empty()) return "did you mean '" + near + "'?";
-  std::string all;
-  for (const std::string_view each : known) all += (all.empty() ? "" : ", ") + std::string(each);
-  return "known: " + all;
+  return "known: " + joined(known);
 }
 
 bool is_comment(const Json& value) {

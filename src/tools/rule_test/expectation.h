@@ -7,7 +7,6 @@
 
 #include "knowledge/event.h"
 #include "language/rule_set.h"
-#include "language/source.h"
 
 namespace culprit::rule_test {
 

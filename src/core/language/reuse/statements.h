@@ -7,7 +7,6 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "language/line_reader.h"
 #include "language/scanner.h"

@@ -1,9 +1,6 @@
 #include "study/statistics/distribution.h"
 
 #include <bit>
-#include <cmath>
-
-#include "base/invariant.h"
 
 namespace culprit::study {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/joined.h"
 #include "exemplars/suave/model/vehicle.h"
 #include "simulation/random.h"
 
@@ -138,11 +139,7 @@ Expected<ThrusterSetting> parse_thruster(std::string_view text) {
 }
 
 std::string to_string(const Range& range) {
-  if (!range.turns.empty()) {
-    std::string text;
-    for (const double each : range.turns) text += (text.empty() ? "" : ",") + plain(each);
-    return text;
-  }
+  if (!range.turns.empty()) return joined(range.turns, ",", plain);
   return range.low == range.high ? plain(range.low) : plain(range.low) + ".." + plain(range.high);
 }
 

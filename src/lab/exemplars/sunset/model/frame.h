@@ -2,7 +2,6 @@
 // segmentation's entropy.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
