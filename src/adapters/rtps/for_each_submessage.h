@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/mutex.h"
 #include "rtps/cdr.h"
 #include "rtps/speakers.h"
 #include "rtps/submessage.h"
@@ -16,9 +17,10 @@ inline std::uint16_t number_at(ByteView bytes, std::size_t at, bool is_little) {
                                               : bytes[at] << 8 | bytes[at + 1]);
 }
 
-// Calls `found` with each submessage, its header included. Stops at the first damaged one.
+// Calls `found` with each submessage, its header included; the caller holds what that requires. Stops at the first
+// damaged one.
 template <class Found>
-void for_each_submessage(ByteView datagram, Found found) {
+void for_each_submessage(ByteView datagram, Found found) CULPRIT_NOT_ANALYZED {
   if (!is_rtps(datagram)) return;
   for (ByteView rest = datagram.subspan(rtps::kHeader); rest.size() >= rtps::kSubmessageHeader;) {
     const std::size_t length = number_at(rest, 2, (rest[1] & 1) != 0);
