@@ -11,13 +11,13 @@ namespace {
 
 // The parts of an acknowledgement (RTPS 2.3 §9.4.5.2), from its header on: the entities of its reader and its writer, the
 // first number, the size of its bitmap, the bitmap, its count.
-constexpr std::size_t kWriter = 8;
+constexpr std::size_t kWriterAt = 8;
 constexpr std::size_t kFirst = 12;
 constexpr std::size_t kBits = 20;
 constexpr std::size_t kBitmap = 24;
 constexpr std::uint8_t kIsFinal = 0x02;
 
-constexpr std::array<std::array<std::uint8_t, 4>, 2> kAnnouncers = {
+constexpr std::array<std::array<std::uint8_t, 4>, 2> kEndpointAnnouncers = {
     {{0x00, 0x00, 0x03, 0xc2}, {0x00, 0x00, 0x04, 0xc2}}};  // of writers and of readers (§9.3.1.3)
 
 std::uint32_t word_at(ByteView bytes, std::size_t at, bool is_little) {
@@ -36,9 +36,9 @@ struct Missing {
 std::optional<Missing> missing_in(ByteView request, const GuidPrefix& destination) {
   const bool is_fast_dds = destination.bytes[0] == 1 && destination.bytes[1] == 15;
   if (request[0] != rtps::kAckNack || !is_fast_dds || request.size() < kBitmap) return std::nullopt;
-  const auto writer = request.subspan(kWriter, 4);
+  const auto writer = request.subspan(kWriterAt, 4);
   const bool is_announcer = std::ranges::any_of(
-      kAnnouncers, [&](const auto& each) { return std::ranges::equal(each, writer); });
+      kEndpointAnnouncers, [&](const auto& each) { return std::ranges::equal(each, writer); });
   const bool is_little = (request[1] & 1) != 0;
   const std::size_t bits = word_at(request, kBits, is_little);
   Missing missing;
