@@ -1,4 +1,5 @@
 // A fault whose node obeys late, or otherwise than asked, is taken back all the same.
+#include <future>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -79,7 +80,14 @@ TEST_F(DrillInjectorAtANode, ThatTakesAParameterLateSetsItBack) {
   Camera camera;
   const drill::Injected fault =
       prepared({FaultKind::kSetParameter, "camera", "exposure", Value(9.0)});
-  std::thread busy([&] { camera.context.run([] { std::this_thread::sleep_for(kLate); }); });
+  std::promise<void> begun;
+  std::thread busy([&] {
+    camera.context.run([&] {
+      begun.set_value();
+      std::this_thread::sleep_for(kLate);
+    });
+  });
+  begun.get_future().wait();
   EXPECT_FALSE(injector.inject(fault, 1s)) << "no answer yet";
   EXPECT_TRUE(injector.undo(fault));
   busy.join();
