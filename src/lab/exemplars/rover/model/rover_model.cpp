@@ -17,7 +17,7 @@ constexpr Duration kAnswer = 10ms;  // of a request that takes no time: the two 
 constexpr Duration kTransition = 40ms;  // of a lifecycle, as the live rover's servers need
 constexpr Duration kEnds = 150ms;       // after SIGINT: the live rover's nodes end in 0.1 to 0.2 s
 constexpr Duration kEscalates =
-    2s;  // until the supervisor sends SIGKILL to a process that hangs (owners/supervisor.cpp)
+    2s;  // until the supervisor sends SIGKILL to a process that hangs (owners/supervisor_ending.cpp)
 constexpr Duration kLease = 20s;        // of a killed participant (Fast DDS)
 constexpr Duration kDiscovery = 300ms;  // until others know a new node
 constexpr Duration kFirstProbe =
