@@ -187,11 +187,14 @@ Awaiting Awaited::awaiting(RuleId failure) const {
   const Time onset = onset_of(failure, knowledge_).latest;
   const Time first_onset = first_onset_of(failure, knowledge_);
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
+  const Duration lateness = presumed_lateness(failure, knowledge_);
   Awaiting found;
   const auto wait_for = [&](const Two& all, Time latest, Time detected) {
     const Best& evidence = all.without(failure);
     if (!evidence.rule) return;
-    const Time until = std::min(later(latest, evidence.within), later(detected, kLongestEvidence));
+    const Time until =
+        std::clamp(later(latest - lateness, evidence.within), later(latest, next_reading(evidence)),
+                   later(detected, kLongestEvidence));
     if (until > found.until) found = {until, *evidence.rule, false};
   };
   const Duration passing = duration_of(kPassing, knowledge_.rules);

@@ -1,7 +1,7 @@
 // Evidence that can still come: for each failure, how long something upstream may yet prove to be its
 // cause.
 //
-//     W_i = max_u min(l_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
+//     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
 //                                                            symptom that can cause i's
 //           l_i + one reading and a cycle of u, at most 2 s  i is an outage, u of a value of a supplier
 //                                                            by DEPENDENCY (a rail, a hub)
@@ -12,8 +12,10 @@
 //                                                            e_u <= l_i and e_i <= r_u + passing
 //
 //   e_i, E_u        onset and evidence time (timing.h); d_i the detection of i
-//                   If i comes and goes, l_i and d_i are those of the first time, but for rules u that
-//                   cleared lately: they may come and go with i
+//   b_i             when i presumably began: l_i, less the presumed lateness of a value's rule, but at
+//                   most so early that a reading and a cycle of u are waited for after l_i. If i comes
+//                   and goes, b_i and d_i are those of the first time, but for rules u that cleared
+//                   lately: they may come and go with i
 //   r_u             when u recovered: it cleared then, less its presumed lateness; a component was
 //                   back then
 //   passing         kPassing: how long a bad value usually takes along the graph; 0 at i's own

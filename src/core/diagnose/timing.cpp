@@ -160,6 +160,12 @@ Time first_onset_of(RuleId failure, const Knowledge& knowledge) {
   return std::min(onset_of(failure, knowledge).latest, knowledge.states[failure].first_onset);
 }
 
+Duration presumed_lateness(RuleId failure, const Knowledge& knowledge) {
+  const Latencies::Range lateness = knowledge.latencies.lateness(failure);
+  return symptom_of(failure, knowledge) == Symptom::kValue ? lateness.presumed - lateness.least
+                                                           : Duration::zero();
+}
+
 bool may_fire(RuleId rule, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[rule];
   const bool has_acted = knowledge.rules[rule].policies.on_change && !state.detection.armed;

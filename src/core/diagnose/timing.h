@@ -72,6 +72,8 @@ Onset onset_now(RuleId rule, Time now, const Knowledge& knowledge);
 // detections, if it comes and goes.
 Onset onset_of(RuleId failure, const Knowledge& knowledge);
 Time first_onset_of(RuleId failure, const Knowledge& knowledge);
+// How much earlier than the latest possible onset the failure presumably began.
+Duration presumed_lateness(RuleId failure, const Knowledge& knowledge);
 
 // Can the rule fire: it is quiet, its COOLDOWN is over, and with ON_CHANGE its trigger was not true since it
 // acted?

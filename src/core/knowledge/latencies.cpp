@@ -43,12 +43,18 @@ bool only_reports_the_same(const Rule& rule, const Input& input, const RuleSet& 
          });
 }
 
-Duration least_impact(const Rule& rule, const RuleSet& rules) {
+// Of the strategies that are `wanted`.
+Duration least_impact(const Rule& rule, const RuleSet& rules, auto wanted) {
   std::optional<Cycles> least;
   for (const StrategyId id : rule.strategies) {
-    if (!least || rules[id].impact < *least) least = rules[id].impact;
+    if (wanted(rules[id]) && (!least || rules[id].impact < *least)) least = rules[id].impact;
   }
   return duration_of(least.value_or(Cycles{0}), rules);
+}
+
+// The impact of one that starts a process is mostly the time of that start.
+bool starts_nothing(const Strategy& strategy) {
+  return std::ranges::none_of(strategy.adaptations, launches);
 }
 
 }  // namespace
@@ -74,8 +80,9 @@ Latencies::Latencies(const RuleSet& rules)
       return reads_value(rules[id]) && (status.empty() || readers[status].size() < 2);
     });
     if (!is_late_[r]) continue;
-    const Duration most = least_impact(rules.rules[r], rules);
-    stated_[r] = {Duration::zero(), most, std::max<Duration>(Duration::zero(), most - rules.cycle)};
+    const Duration most = least_impact(rules.rules[r], rules, [](const Strategy&) { return true; });
+    const Duration presumed = least_impact(rules.rules[r], rules, starts_nothing) - rules.cycle;
+    stated_[r] = {Duration::zero(), most, std::clamp<Duration>(presumed, Duration::zero(), most)};
   }
 }
 

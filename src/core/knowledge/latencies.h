@@ -3,7 +3,8 @@
 //
 //   stated    before anything was observed: at most the least impact of the rule's strategies,
 //             because the rule's author expects to see the effect of that strategy within it.
-//             Presumably one cycle less (the author rounds up), and possibly not at all
+//             Presumably one cycle less (the author rounds up), and possibly not at all. How long a process
+//             takes to start is no lateness: of a rule that only replaces processes nothing is presumed
 //   learned   from how long after a proven repair the rule cleared: the shortest and the longest time; and
 //             from how long after its effects it fired, if its repair cleared them, too. A rule that clears
 //             soon may fire late, so evidence allows for what is stated, too.
