@@ -109,6 +109,7 @@ std::string_view advice_about(std::string_view option, std::string_view command)
   constexpr std::string_view kFile = "write > FILE behind the command";
   constexpr std::string_view kRosArguments =
       "leave it out, for culprit takes no arguments of ROS; see culprit run --help";
+  constexpr std::string_view kList = "write silence list";
   constexpr std::string_view kSends = "alerts only sends a test";
   constexpr std::string_view kWrites = "fmt writes the file unless --check or --diff is given";
   constexpr auto kAdvice = std::to_array<Advice>({{"--domain", "", kDomain},
@@ -123,6 +124,7 @@ std::string_view advice_about(std::string_view option, std::string_view command)
                                                   {"--in-place", "fmt", kWrites},
                                                   {"-i", "fmt", kWrites},
                                                   {"--dry-run", "alerts", kSends},
+                                                  {"--list", "silence", kList},
                                                   {"--daemon", "run", kService},
                                                   {"--background", "run", kService},
                                                   {"--no-color", "", "set NO_COLOR=1"},

@@ -178,6 +178,21 @@ class AdaptationReader {
                                 "write the amount itself, in the unit of the parameter");
   }
 
+  // "set_parameter max_speed 0.4m/s 2": reported.
+  bool has_metres(const Scanner& s) {
+    const Span first = s.peek().span;
+    const std::string_view rest = source_.text(s.rest());
+    const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
+    const std::string number(word.substr(0, word.find('m')));
+    const bool is_so = word.find('m') != std::string_view::npos && !number.empty() &&
+                       number.find_first_not_of("0123456789.") == std::string::npos &&
+                       (word.ends_with('m') || word.find('/') != std::string_view::npos);
+    const Span all{first.begin, first.begin + static_cast<std::uint32_t>(word.size())};
+    return is_so && !read_.fail(Code::kBadToken, all, "ROS parameters have no unit",
+                                "write " + number + ", in the unit that the node expects",
+                                Edit{all, number});
+  }
+
   bool value(Scanner& s, syntax::Adaptation& adaptation) {
     const Token& next = s.peek();
     constexpr std::string_view kNoSign = "unexpected '=' between a parameter and its value";
@@ -211,8 +226,10 @@ class AdaptationReader {
       return read_.fail(Code::kTypeMismatch, {next.span.begin, ahead.peek().span.end},
                         "ROS parameters hold no durations",
                         "write only the number, in the unit that the node expects");
-    if (has_percent(s)) return false;
+    if (has_percent(s) || has_metres(s)) return false;
     adaptation.value = read_.expression(s);
+    if (adaptation.value && read_.is_in_number(s.peek()))
+      return read_.fail_comma_in_number(s.peek());
     return adaptation.value.has_value();
   }
 

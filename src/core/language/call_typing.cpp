@@ -42,6 +42,7 @@ class CallTyper {
 
   Typed input(const Input& wanted, Type type) { return typer_.input(wanted, type); }
   bool is_swapped(const Expression& e);
+  bool is_window_first(const Expression& e);
   bool is_window(const Expression& e) const;
   std::nullopt_t window_in_brackets(const Expression& e, std::size_t bracket);
 
@@ -185,11 +186,24 @@ bool CallTyper::is_swapped(const Expression& e) {
   return true;
 }
 
+// goals(/navigate, 1min, aborted): reported.
+bool CallTyper::is_window_first(const Expression& e) {
+  const Expression& second = e.children[2];
+  if (second.kind != Expression::Kind::kName || !parse_duration(e.children[1].name.text))
+    return false;
+  const Span both{e.children[1].span.begin, second.span.end};
+  const std::string right = second.name.text + ", " + e.children[1].name.text;
+  typer_.fail(Code::kArguments, both, "the window stands at the end", "write " + right,
+              Edit{both, right});
+  return true;
+}
+
 std::optional<Typed> CallTyper::goals(const Expression& e) {
   const auto topic = action_argument(e.children[0]);
   if (!topic) return std::nullopt;
   const syntax::Name& word = e.children[1].name;
   const auto outcome = counted_outcome(word.text);
+  if (!outcome && is_window_first(e)) return std::nullopt;
   if (!outcome) {
     const std::string near = closest(word.text, counted_outcomes());
     return typer_.fail(Code::kArguments, word.span, "no goal ends as '" + word.text + "'",
@@ -219,6 +233,7 @@ std::optional<Typed> CallTyper::goal_age(const Expression& e) {
 std::optional<Typed> CallTyper::logs(const Expression& e) {
   const syntax::Name& word = e.children[1].name;
   const auto level = log_level(word.text);
+  if (!level && is_window_first(e)) return std::nullopt;
   if (!level) {
     const std::string upper = upper_case(word.text);
     const std::string near = log_level(upper) ? upper : closest(upper, log_levels());
@@ -342,6 +357,14 @@ std::optional<TopicId> CallTyper::topic_argument(const Expression& e) {
       is_component_reference(inside))
     return typer_.fail(Code::kBadRosName, e.span, "a topic has no quotes", "write " + inside,
                        Edit{e.span, inside});
+  if (const std::string rest = written.substr(std::min<std::size_t>(1, written.size()));
+      written.starts_with('"') && rest.starts_with('/') && is_component_reference(rest))
+    return typer_.fail(Code::kBadToken, e.span, "this string has no closing '\"'",
+                       "a topic has no quotes: write " + rest, Edit{e.span, rest});
+  if (written.starts_with('$') || written.starts_with('{'))
+    return typer_.fail(Code::kBadRosName, e.span, "'" + written + "' is no full topic name",
+                       written.starts_with('$') ? "remove the '$': braces alone name a parameter"
+                                                : "write one pair of braces around a parameter");
   return typer_.fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is no full topic name",
                      e.name.text.starts_with('/')
                          ? remedy_of_ros_name(e.name.text)

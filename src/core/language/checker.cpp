@@ -95,7 +95,7 @@ class Checker {
   }
 
   std::optional<syntax::Literal> constant_value(const syntax::Constant& constant) {
-    if (names_a_signal(constant.value)) return std::nullopt;
+    if (is_comment(constant.value) || names_a_signal(constant.value)) return std::nullopt;
     const auto typed = type_expression(constant.value, symbols_, diagnostics_);
     if (!typed) return std::nullopt;
     if (reads_inputs(*typed)) {
@@ -113,6 +113,26 @@ class Checker {
     if (typed->type == Type::kDuration) return Duration(slot.i);
     return std::visit([](const auto& value) -> syntax::Literal { return value; },
                       to_value(slot, typed->type));
+  }
+
+  // "75.0 -- degrees", which reads as two signs
+  bool is_comment(const syntax::Expression& e) {
+    using Kind = syntax::Expression::Kind;
+    if (e.kind != Kind::kBinary || e.op != syntax::Operator::kSubtract) return false;
+    const syntax::Expression& right = e.children[1];
+    const std::uint32_t signs = right.span.begin - 1;
+    const bool is_so =
+        right.kind == Kind::kUnary && right.op == syntax::Operator::kNegate &&
+        right.children[0].kind == Kind::kName && e.children[0].span.end + 1 == signs &&
+        right.children[0].span.begin > signs + 2 && !symbols_.constant(right.children[0].name.text);
+    if (is_so)
+      diagnostics_.push_back({Code::kExtraText,
+                              Severity::kError,
+                              {signs, signs + 2},
+                              "no comment begins with '--'",
+                              "begin a comment with #",
+                              Edit{{signs, signs + 2}, "#"}});
+    return is_so;
   }
 
   // A constant must not create signals by naming them.

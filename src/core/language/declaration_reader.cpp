@@ -62,7 +62,7 @@ bool DeclarationReader::constant(Scanner& s) {
   auto name = read_.declared_name(s, "the constant's name");
   if (!name || !read_.is_one_word(s, *name, kEqualsSign) || !equals_sign(s, *name)) return false;
   auto value = read_.expression(s);
-  if (value && s.peek().is(","))
+  if (value && s.peek().is(",") && !read_.is_in_number(s.peek()))
     return read_.fail(Code::kExtraText, s.peek().span, "one line has one constant",
                       "write the next one on a line of its own that begins with CONST");
   if (!value || !read_.line_ends(s)) return false;
@@ -92,6 +92,18 @@ bool DeclarationReader::component(Scanner& s) {
   const auto clauses = component_clauses();
   if (const Token& word = s.peek(); std::ranges::find(clauses, word.text) != clauses.end()) {
     const std::string rest(source_.text(s.rest()));
+    Scanner behind = s.ahead();
+    behind.next();
+    const Token name = behind.next();
+    // "COMPONENT NODE lidar /lidar"
+    const bool is_swapped = (word.text == "NODE" && behind.peek().is("/") &&
+                             behind.peek().span.begin > name.span.end) ||
+                            (word.text == "LAUNCH" && behind.peek().kind == Token::Kind::kString);
+    const std::string right = std::string(name.text) + " " + std::string(word.text);
+    if (is_swapped && name.kind == Token::Kind::kIdentifier &&
+        std::ranges::find(clauses, name.text) == clauses.end())
+      return read_.fail(Code::kReservedWord, word.span, "the component's name stands in front",
+                        "write COMPONENT " + right, Edit{{word.span.begin, name.span.end}, right});
     const bool has_node = word.text == "NODE" && rest.rfind('/') != std::string::npos;
     return read_.fail(Code::kReservedWord, word.span, "the component's name is missing",
                       "write it in front: COMPONENT " +
@@ -107,6 +119,10 @@ bool DeclarationReader::component(Scanner& s) {
 }
 
 bool DeclarationReader::dependency(Scanner& s) {
+  if (s.peek().text == "ON")
+    return read_.fail(
+        Code::kReservedWord, s.peek().span, "a component is missing in front of ON",
+        "write the component that needs the other one first: DEPENDENCY fusion ON camera");
   auto consumer = read_.component_reference(s);
   if (!consumer || !on(s)) return false;
   syntax::Dependency dependency{std::move(*consumer), {}};

@@ -210,6 +210,12 @@ class ExpressionParser {
       if (adjoins && (second.is(">") || second.is("<")))
         return wrong_operator({token.span.begin, second.span.end}, "=" + std::string(second.text),
                               std::string(second.text) + "=");
+      if (adjoins && text_of(second.span) == "~")
+        return Diagnostic{Code::kSyntax,
+                          Severity::kError,
+                          {token.span.begin, second.span.end},
+                          "'=~' is no operator",
+                          "compare with each: x == \"a\" || x == \"b\""};
       auto slip = wrong_operator(token.span, "=", "==");
       slip.remedy += " to compare";
       return slip;

@@ -40,6 +40,51 @@ std::string rule_file(const std::string& trigger, const std::string& strategy = 
          adaptation + "\n";
 }
 
+// The remedy for the first mistake of the text.
+std::string remedy(const std::string& text) {
+  const Checked checked = check(Source("test.rules", text));
+  return checked.diagnostics.empty() ? "" : checked.diagnostics.front().remedy;
+}
+
+TEST(Fixes, FitHurriedDeclarations) {
+  EXPECT_EQ(fixed("CONST hot = 75,5\n"), "CONST hot = 75.5\n");
+  EXPECT_EQ(fixed("CONST hot = 75.0 -- degrees\n"), "CONST hot = 75.0 # degrees\n");
+  EXPECT_EQ(fixed("COMPONENT NODE lidar /lidar\n"), "COMPONENT lidar NODE /lidar\n");
+  EXPECT_EQ(fixed("SIGNAL s TOPIC /t FIELD .data\n"), "SIGNAL s TOPIC /t FIELD data\n");
+  EXPECT_EQ(fixed("TEMPLATE t(hz: 10)\nEND\n"), "TEMPLATE t(hz = 10)\nEND\n");
+  EXPECT_EQ(remedy("SIGNAL s TOPIC /t FIELD cells[-1]\n"), "write its number, as in ranges[0]");
+  EXPECT_EQ(remedy("DEPENDENCY ON lidar fusion\n"),
+            "write the component that needs the other one first: DEPENDENCY fusion ON camera");
+}
+
+TEST(Fixes, FitHurriedRules) {
+  const std::string right = rule_file("x > 1", "STRATEGY s 50 10", "ADAPTATION c restart 5",
+                                      "POLICIES ERROR COOLDOWN 10s");
+  const auto policies = [](const std::string& cooldown) {
+    return fixed(rule_file("x > 1", "STRATEGY s 50 10", "ADAPTATION c restart 5",
+                           "POLICIES ERROR COOLDOWN " + cooldown));
+  };
+  EXPECT_EQ(policies("00:00:10"), right);
+  EXPECT_EQ(policies("00:10"), right);
+  const auto trigger = [](const std::string& wrong) { return fixed(rule_file(wrong)); };
+  EXPECT_EQ(trigger("rate(\"/scan) < 8"), rule_file("rate(/scan) < 8"));
+  EXPECT_EQ(trigger("goals(/go, 1min, aborted) > 3"), rule_file("goals(/go, aborted, 1min) > 3"));
+  EXPECT_EQ(trigger("logs(c, 10s, ERROR) > 3"), rule_file("logs(c, ERROR, 10s) > 3"));
+  EXPECT_EQ(trigger("logs(c, ERROR, 1d) > 3"), rule_file("logs(c, ERROR, 24h) > 3"));
+  EXPECT_EQ(remedy(rule_file("lifecycle(c) =~ \"inactive|finalized\"")),
+            "compare with each: x == \"a\" || x == \"b\"");
+  EXPECT_EQ(remedy(rule_file("lifecycle(c) == \"deactivated\"")), "write \"inactive\"");
+  EXPECT_EQ(fixed(rule_file("x > 1", "STRATEGY s 50 10 WEHN alive(c)")),
+            rule_file("x > 1", "STRATEGY s 50 10 WHEN alive(c)"));
+  const auto adaptation = [](const std::string& written) {
+    return rule_file("x > 1", "STRATEGY s 50 10", "ADAPTATION c set_parameter p " + written);
+  };
+  EXPECT_EQ(fixed(adaptation("0,4 5")), adaptation("0.4 5"));
+  EXPECT_EQ(fixed(adaptation("0.4m/s 5")), adaptation("0.4 5"));
+  EXPECT_EQ(remedy(rule_file("rate(/scan) < 8", "STRATEGY s 50 10 WHEN alive(/scan)")),
+            "write the component that publishes it");
+}
+
 TEST(Fixes, PutExpressionsRight) {
   const auto becomes = [](const std::string& wrong, const std::string& right) {
     EXPECT_EQ(fixed(rule_file(wrong)), rule_file(right));

@@ -161,6 +161,7 @@ void check_topics_as_components(const syntax::File& file, const RuleSet& rules,
   for (const syntax::Rule& rule : file.rules) {
     if (rule.trigger) check_calls(*rule.trigger, check);
     for (const syntax::Strategy& strategy : rule.strategies) {
+      if (strategy.when) check_calls(*strategy.when, check);
       for (const syntax::Adaptation& a : strategy.adaptations) check(a.component);
     }
   }

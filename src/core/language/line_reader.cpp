@@ -277,7 +277,7 @@ bool LineReader::fail_foreign_duration(const Token& token, const Scanner& behind
                  "remove it", Edit{{token.span.begin, second.span.begin}, ""});
   const auto* minutes = std::get_if<std::int64_t>(&token.literal);
   const Token third = ahead.next();
-  const Span all{token.span.begin, third.span.end};
+  Span all{token.span.begin, third.span.end};
   if (const std::string meant = written + "." + std::string(source_.text(third.span));
       second.is(",") && third.kind == Token::Kind::kDuration && parse_duration(meant))
     return !fail(Code::kSyntax, all, "a number has a point, and no comma", "write " + meant,
@@ -286,7 +286,15 @@ bool LineReader::fail_foreign_duration(const Token& token, const Scanner& behind
   constexpr std::int64_t kMost = 100'000;
   if (second.is(":") && minutes != nullptr && seconds != nullptr && *minutes < kMost &&
       *seconds < 60) {
-    const std::string meant = to_string(Duration(std::chrono::seconds(*minutes * 60 + *seconds)));
+    std::int64_t sum = *minutes * 60 + *seconds;
+    const bool has_hours = ahead.next().is(":");
+    const Token fifth = ahead.next();
+    if (const auto* last = std::get_if<std::int64_t>(&fifth.literal);
+        has_hours && last != nullptr && *last < 60) {
+      sum = sum * 60 + *last;
+      all.end = fifth.span.end;
+    }
+    const std::string meant = to_string(Duration(std::chrono::seconds(sum)));
     return !fail(Code::kSyntax, all, "a duration is a number and its unit", "write " + meant,
                  Edit{all, meant});
   }
@@ -479,6 +487,25 @@ std::string LineReader::blank_for(const Token& separator) const {
   return end < text.size() && !is_blank(text[end]) ? " " : "";
 }
 
+bool LineReader::has_digit(std::uint32_t at) const {
+  const std::string_view text = source_.text();
+  return at < text.size() && text[at] >= '0' && text[at] <= '9';
+}
+
+bool LineReader::is_in_number(const Token& comma) const {
+  return comma.is(",") && comma.span.begin > 0 && has_digit(comma.span.begin - 1) &&
+         has_digit(comma.span.end);
+}
+
+bool LineReader::fail_comma_in_number(const Token& comma) {
+  const std::uint32_t third = comma.span.end + 2;
+  if (has_digit(third - 1) && has_digit(third) && !has_digit(third + 1))
+    return fail(Code::kExtraText, comma.span, "a number has no comma",
+                "leave it out if it separates thousands, or write a '.'");
+  return fail(Code::kExtraText, comma.span, "a number has a point, and no comma", "write a '.'",
+              Edit{comma.span, "."});
+}
+
 bool LineReader::fail_comma(const Token& comma) {
   const Span line = source_.line(source_.position(comma.span.begin).line);
   const std::string_view in_front = trimmed(source_.text({line.begin, comma.span.begin}));
@@ -512,21 +539,10 @@ bool LineReader::line_ends(Scanner& s, std::string_view remedy) {
       return fail(Code::kExtraText, token.span, std::string(kCause), std::string(slip.remedy),
                   Edit{token.span, std::string(slip.meant)});
   }
-  const std::string_view text = source_.text();
-  const auto is_digit = [&](std::uint32_t at) {
-    return at < text.size() && text[at] >= '0' && text[at] <= '9';
-  };
-  const bool is_in_number = token.is(",") && token.span.begin > 0 &&
-                            is_digit(token.span.begin - 1) && is_digit(token.span.end);
-  const std::uint32_t third = token.span.end + 2;
-  if (is_in_number && is_digit(third - 1) && is_digit(third) && !is_digit(third + 1))
-    return fail(Code::kExtraText, token.span, "a number has no comma",
-                "leave it out if it separates thousands, or write a '.'");
-  if (is_in_number)
-    return fail(Code::kExtraText, token.span, "a number has a point, and no comma", "write a '.'",
-                Edit{token.span, "."});
+  if (is_in_number(token)) return fail_comma_in_number(token);
   if (token.is(",")) return fail_comma(token);
   // The scanner takes the two characters for signs.
+  const std::string_view text = source_.text();
   const Span line = source_.line(source_.position(token.span.begin).line);
   const auto dashes = text.substr(0, token.span.begin).rfind(" --");
   if (dashes != std::string_view::npos && dashes >= line.begin) {

@@ -69,6 +69,9 @@ class LineReader {
   // The same behind a condition.
   bool condition_ends(Scanner& s);
   bool fail_comma(const Token& comma);
+  // "0,5"
+  bool is_in_number(const Token& comma) const;
+  bool fail_comma_in_number(const Token& comma);
 
   // Complaints. All give false, for `return fail(...)`.
   bool fail(Code code, Span span, std::string cause, std::string remedy,
@@ -88,6 +91,8 @@ class LineReader {
   }
 
  private:
+  bool has_digit(std::uint32_t at) const;
+
   // The replacement for a separator that is removed, so that no two words become one.
   std::string blank_for(const Token& separator) const;
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "base/closest.h"
 #include "language/adaptation_reader.h"
 
 namespace culprit {
@@ -214,6 +215,10 @@ bool RuleReader::strategy_ends(Scanner& s) {
   if (upper == "LAST_RESORT" || upper == "LAST")
     return read_.fail(Code::kExtraText, token.span, "a strategy has no " + std::string(token.text),
                       "did you mean LASTRESORT?");
+  if (const std::string near = closest(upper, {"WHEN", "LASTRESORT", "WITHIN"});
+      !near.empty() && near != upper && upper != "THEN")
+    return read_.fail(Code::kExtraText, token.span, "a strategy has no " + std::string(token.text),
+                      "did you mean " + near + "?", Edit{token.span, near});
   return read_.line_ends(
       s, "behind the probability and the confidence stand only LASTRESORT, WITHIN and WHEN");
 }

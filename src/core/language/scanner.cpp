@@ -241,6 +241,10 @@ Complaint not_a_number(Span span, std::string_view text) {
   const std::string cause = "'" + std::string(text) + "' is neither a number nor a duration";
   if (letters == "m")
     return {cause, std::nullopt, "write " + number + "min for minutes, or " + number + "ms"};
+  if (letters == "d" && number.size() < 4 && number.find('.') == std::string::npos) {
+    const std::string hours = std::to_string(std::atoi(number.c_str()) * 24) + "h";
+    return {cause, Edit{span, hours}, "write " + hours};
+  }
   if (const std::string whole = in_one_unit(text); !whole.empty())
     return {"a duration has one unit", Edit{span, whole}, "write " + whole};
   const std::string_view unit = duration_unit(letters);

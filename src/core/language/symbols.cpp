@@ -422,6 +422,19 @@ SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
 
 // "pose/position/x"
 void Symbols::check_field(const syntax::Name& field) {
+  if (field.text.starts_with('.') && field.text.size() > 1) {
+    const std::string meant = field.text.substr(1);
+    diagnostics_.push_back({Code::kSyntax, Severity::kError, field.span,
+                            "a path of fields begins with no '.'", "write " + meant,
+                            Edit{field.span, meant}});
+    return;
+  }
+  if (field.text.find("[-") != std::string::npos) {
+    diagnostics_.push_back({Code::kSyntax, Severity::kError, field.span,
+                            "elements count from 0, from the front",
+                            "write its number, as in ranges[0]"});
+    return;
+  }
   if (field.text.find('/') == std::string::npos ||
       field.text.find_first_of("[(") != std::string::npos)
     return;

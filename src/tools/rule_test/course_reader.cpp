@@ -76,7 +76,8 @@ class CourseReader {
       stretch.until = read_.duration(s_, "a time");
       if (!stretch.until) return false;
       if (*stretch.until <= stretch.from)
-        return read_.fail(Code::kEmptyRange, span, "this time is not after the one before", "");
+        return read_.fail(Code::kEmptyRange, span, "this time is not after the one before",
+                          "write the earlier time first");
       if (std::holds_alternative<ParameterId>(course.subject))
         return read_.fail(Code::kSyntax, span, "a parameter keeps its value until it is set again",
                           "write the time from which on it has it, as in 2s: true");

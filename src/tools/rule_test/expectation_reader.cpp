@@ -96,6 +96,9 @@ class ExpectationReader {
                         "the rules have no rule, strategy or component '" + subject->text + "'",
                         near.empty() ? "" : "did you mean " + near + "?");
     }
+    if (upper_case(word.text) == "NOT" && e_.wanted)
+      return read_.fail(Code::kSyntax, word.span, "NOT stands behind EXPECT",
+                        "write EXPECT NOT " + subject->text + " " + std::string(s_.peek().text));
     const auto fitting = verbs_of(subject->text);
     return read_.unexpected_clause(
         word, fitting,

@@ -117,6 +117,10 @@ class Reader {
     has_scenario_ = false;
     if (!name) return false;
     const bool is_quoted = source_.text()[name->span.begin] == '"';
+    if (name->text.starts_with('\'') && s.peek().kind == Token::Kind::kIdentifier)
+      return read_.fail(
+          Code::kSyntax, name->span, "a name with blanks stands in double quotes",
+          "write TEST \"" + name->text.substr(1) + " " + std::string(s.peek().text) + " ...\"");
     if (!is_quoted && s.peek().kind == Token::Kind::kIdentifier)
       return read_.fail(Code::kSyntax, s.peek().span, "a name with blanks stands in quotes",
                         "write TEST \"" + name->text + " " + std::string(s.peek().text) + " ...\"");
@@ -238,6 +242,11 @@ std::vector<Name> rule_files(const Source& source, std::vector<Diagnostic>& diag
     do {
       auto name = read.name_or_text(s, "the path of a rule file");
       if (!name) break;
+      if (name->text.starts_with("\u201c") || name->text.starts_with("\u2018")) {
+        read.fail(Code::kBadToken, name->span, "this path has typographic quotes",
+                  "write the straight quote of the keyboard: \"");
+        break;
+      }
       files.push_back(std::move(*name));
     } while (!s.at_end());
   }

@@ -154,6 +154,11 @@ bool SetupReader::publishes(ComponentId id, const Name& name) {
       scenario_->origins.push_back({id, TopicId(t)});
   }
   if (is_topic) return true;
+  const std::string topic = "/" + name.text;
+  if (!names_.is_signal(name.text) &&
+      std::ranges::any_of(rules_.topics, [&](const auto& each) { return each.name == topic; }))
+    return read_.fail(Code::kBadRosName, name.span, "'" + name.text + "' is no full topic name",
+                      "write " + topic, Edit{name.span, topic});
   const auto subject = names_.topic_or_signal(name);
   if (subject) scenario_->origins.push_back({id, *subject});
   return subject.has_value();
@@ -337,7 +342,9 @@ std::string fail_unknown_statement(LineReader& read, const Source& source, const
     near = closest(upper, keywords);
     remedy = "did you mean " + near + "?";
   }
-  if (near.empty() && !is_of_rules(upper)) {
+  if (near.empty() && head.kind == Token::Kind::kDuration) {
+    remedy = "write AT in front of it";
+  } else if (near.empty() && !is_of_rules(upper)) {
     remedy = "a line begins with one of";
     for (const std::string_view keyword : keywords) remedy += " " + std::string(keyword);
   }

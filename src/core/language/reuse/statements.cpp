@@ -14,6 +14,11 @@ std::optional<syntax::TemplateParameter> parameter(LineReader& read, Scanner& s)
   auto name = read.declared_name(s, "a parameter's name");
   if (!name) return std::nullopt;
   syntax::TemplateParameter out{std::move(*name), {}};
+  if (s.peek().is(":")) {
+    read.fail(Code::kSyntax, s.peek().span, "expected '=', not ':'",
+              "write '=' in front of the usual value", Edit{s.peek().span, " ="});
+    return std::nullopt;
+  }
   if (!s.peek().is("=")) return out;
   s.next();
   out.usual = read.name_or_text(s, "what '" + out.name.text + "' is if a USE does not say");
