@@ -67,7 +67,7 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
   return (
     <table class="suspects">
       <caption>
-        <Term word="root cause">Possible causes</Term>
+        <Term word="root cause">Possible causes</Term> <small class="muted">(log-odds)</small>
       </caption>
       <tbody>
         {suspects.slice(0, 5).map((s) => (
