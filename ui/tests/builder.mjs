@@ -120,9 +120,9 @@ export async function showsWhatIsSaidOfTheNewestText() {
     await page.reload()
     await expectSoon(() => first.length > 0, 'the file is not checked')
     await status.filter({ hasText: 'being checked' }).waitFor()
-    await page.unroute('**/api/rules/ask')
-    await Promise.all(first.map((route) => route.continue()))
+    await Promise.all(first.splice(0).map((route) => route.continue()))
     await status.filter({ hasText: 'no errors' }).waitFor()
+    await page.unroute('**/api/rules/ask')
     const held = []
     await page.route('**/api/rules/ask', (route) => (route.request().postDataJSON().method === 'textDocument/codeAction' ? held.push(route) : route.continue()))
     // Gives the question whether what was written is right.
