@@ -36,7 +36,8 @@ const kPages = [
 const page = signal('')
 // "#incidents/m9k2" is a place within a page, "#plots/s=…" what it shows.
 function follow(): void {
-  const [name, place = ''] = location.hash.slice(1).split('/')
+  const [name, ...rest] = location.hash.slice(1).split('/')
+  const place = rest.join('/') // people and chats write the slash of a topic as it is
   page.value = name
   if (name === 'incidents') showIncident(place)
   if (name === 'plots') fromAddress(place)

@@ -67,7 +67,7 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
   return (
     <table class="suspects">
       <caption>
-        <Term word="root cause">Possible causes</Term>
+        <Term word="root cause">Possible causes</Term> <small class="muted">(log-odds)</small>
       </caption>
       <tbody>
         {suspects.slice(0, 5).map((s) => (
@@ -432,7 +432,6 @@ export function Explanation({ view }: { view: View }) {
         </p>
       )}
       {all.length === 0 && <NoIncident view={view} />}
-      {view === live && isLive.value && <BlindRules />}
       {wanted && (
         <p class="muted">
           Only what concerns {wanted}.{' '}
@@ -444,6 +443,7 @@ export function Explanation({ view }: { view: View }) {
       {shown.map((incident) => (
         <IncidentCard key={incident.id} {...{ incident, view }} />
       ))}
+      {view === live && isLive.value && <BlindRules />}
     </section>
   )
 }

@@ -24,6 +24,7 @@ const kUprightRow = 208
 const kUprightLayer = 130
 const kBack = 30 // how far an edge bends that has another one in the opposite direction
 const kText = 17
+const kLegend = 40 // pixels at the bottom, where the legend is
 const kUnmanaged = { height: 44, textSize: 13 } // a node that no rule is about
 
 const middleOf = ({ left, top, right, bottom }: Extent): Point => ({ x: (left + right) / 2, y: (top + bottom) / 2 })
@@ -258,7 +259,10 @@ export class Drawing {
     const { boxes, nodes } = this.scene.content
     if (boxes.length + nodes.length === 0) return
     const all = extentOf([...boxes, ...nodes])
-    this.scene.fit(all, isUpright.matches ? 10 : this.grouping === 'none' ? 24 : 40, kMostFitted)
+    const pad = isUpright.matches ? 10 : this.grouping === 'none' ? 24 : 40
+    this.scene.fit(all, pad, kMostFitted)
+    const room = this.scene.height - kLegend
+    if (!isUpright.matches && this.scene.yOf(all.bottom) > room) this.scene.fit(all, pad, kMostFitted, kLegend)
     // From far away one reads the groups.
     if (isWhole || this.grouping !== 'none' || this.scene.zoom >= kNearly * kLeastZoom) return
     const guilty = nodes.filter((n) => n.halo)

@@ -15,6 +15,7 @@ export class Minimap {
     private readonly accent: () => string
   ) {
     this.canvas.className = 'minimap'
+    this.canvas.hidden = true // until it is drawn
     const sharp = devicePixelRatio || 1
     this.canvas.width = kWide * sharp
     this.canvas.height = kHigh * sharp

@@ -301,6 +301,12 @@ function howFarBack(): string {
   return `Plots reach back to ${when(oldest)}: ${why}. Processor and memory that no rule reads are kept for a day.`
 }
 
+// Its dotted lines are for eyes only.
+function inWords(name: string): string {
+  const thresholds = thresholdsOf(name).map(figures).join(' and ')
+  return thresholds ? `${wordsOf(name)} (threshold ${thresholds} ${kindOf(name).unit})` : wordsOf(name)
+}
+
 export function PlotsPage() {
   const plot = useRef<uPlot | null>(null)
   useEffect(followCurves, [])
@@ -324,7 +330,7 @@ export function PlotsPage() {
         <p class="muted">Choose a signal: what the rules read, how topics come, or what processes use.</p>
       ) : (
         <Plotter
-          label={`${names.map(wordsOf).join(', ')} over time; Save as CSV has the values`}
+          label={`${names.map(inWords).join(', ')} over time; Save as CSV has the values`}
           height={isNarrow.value ? kHigh / 1.5 : kHigh}
           remake={names.map((name) => name + kindOf(name).unit).join() + (robot.value?.thresholds?.length ?? 0) + isNarrow.value}
           make={() => optionsFor(names, (begin, end) => show(plotted.value, { from: begin, to: Math.max(end, begin + kShortest) }))}

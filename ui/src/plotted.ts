@@ -67,6 +67,7 @@ export function kindOf(name: string): Kind {
     const place = robot.value?.inputs.indexOf(subjectOf(name)) ?? -1
     if (typeof state.value?.inputs[place] === 'boolean') return { ...kKinds.input, unit: 'true = 1' }
     if (kTimes.test(subjectOf(name))) return { ...kKinds.input, unit: 's' }
+    if (subjectOf(name).startsWith('rate(')) return { ...kKinds.input, unit: 'Hz' }
   }
   return kKinds[what] ?? kKinds.input
 }
@@ -89,13 +90,16 @@ export const offered = computed((): string[] => {
   ]
 })
 
-// The constants that rules compare it with, in the unit of the plot.
+const inputs = () => robot.value?.inputs ?? []
+
+// The constants that rules compare it with, in the unit of the plot. Rules read rates over several windows.
 export function thresholdsOf(name: string): number[] {
   const subject = subjectOf(name)
   const what = name.slice(0, name.indexOf(' '))
+  if (what === 'rate') return inputs().flatMap((input, place) => (input.startsWith(`rate(${subject}, `) ? (robot.value?.thresholds?.[place] ?? []) : []))
   const [input, scale] =
     what === 'input' ? [subject, 1] : what === 'processor' ? [`cpu(${subject})`, 100] : what === 'memory' ? [`memory(${subject})`, 1.048576] : [`${what}(${subject})`, 1]
-  const place = robot.value?.inputs.indexOf(input) ?? -1
+  const place = inputs().indexOf(input)
   return (robot.value?.thresholds?.[place] ?? []).map((value) => value * scale)
 }
 

@@ -1,5 +1,5 @@
 // The rule builder: a form and a text editor of the same file. Each shows the changes of the other.
-import { effect, signal } from '@preact/signals'
+import { computed, effect, signal } from '@preact/signals'
 import { useEffect, useRef, useState } from 'preact/hooks'
 import { call, hasToken, Refusal } from './api'
 import { type Editor, type Found, makeEditor } from './editor'
@@ -27,7 +27,8 @@ interface File {
 const file = signal<File | null>(null) // as it was opened, or saved last
 const text = signal('')
 effect(() => hindsightFollows(text.value))
-const found = signal<Found[]>([])
+const checked = signal<Found[] | null>(null) // nothing before the first check
+const found = computed(() => checked.value ?? [])
 const unreadable = signal('') // why there is no form of the text
 const restored = signal<Draft | null>(null) // brought back after a reload
 const theirs = signal<File | null>(null) // saved by another client meanwhile
@@ -221,7 +222,7 @@ export function RulesPage() {
           keep()
           void readForm()
         },
-        (list) => (found.value = list)
+        (list) => (checked.value = list)
       )
       await readForm()
     }
@@ -271,10 +272,12 @@ export function RulesPage() {
             ◆ {refusedFields() === 1 ? 'one field is' : `${refusedFields()} fields are`} not in the text
           </span>
         )}
-        <span class={errors > 0 ? 'sick' : 'well'} role="status">
+        <span class={errors > 0 ? 'sick' : checked.value ? 'well' : 'muted'} role="status">
           {errors > 0
             ? `◆ ${errors} ${errors > 1 ? 'errors' : 'error'}`
-            : `✓ no errors, ${found.value.length} ${found.value.length === 1 ? 'warning' : 'warnings'}`}
+            : !checked.value
+              ? '… being checked'
+              : `✓ no errors, ${found.value.length} ${found.value.length === 1 ? 'warning' : 'warnings'}`}
         </span>
         <button type="button" aria-keyshortcuts="Control+Z" title="Ctrl-Z, also outside of the text" onClick={() => editor.current?.undo()}>
           Undo

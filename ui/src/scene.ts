@@ -173,10 +173,15 @@ export class Scene {
     this.onView()
     this.drawSoon()
   }
-  fit({ left, top, right, bottom }: Extent, pad: number, most = kMostZoom): void {
-    const zoom = Math.min((this.width - 2 * pad) / (right - left), (this.height - 2 * pad) / (bottom - top), most)
+  // `below`: pixels at the bottom that are left free.
+  fit({ left, top, right, bottom }: Extent, pad: number, most = kMostZoom, below = 0): void {
+    const zoom = Math.min((this.width - 2 * pad) / (right - left), (this.height - below - 2 * pad) / (bottom - top), most)
     this.zoom = Math.min(kMostZoom, Math.max(kLeastZoom, zoom))
-    this.center({ x: (left + right) / 2, y: (top + bottom) / 2 })
+    this.center({ x: (left + right) / 2, y: (top + bottom) / 2 + below / (2 * this.zoom) })
+  }
+  // Where a place of the drawing is, in pixels from above.
+  yOf(y: number): number {
+    return this.height / 2 + this.offset.y + y * this.zoom
   }
 
   private press(e: PointerEvent): void {

@@ -212,7 +212,7 @@ export function SimulatorPage() {
               {topic} is silent
             </label>
           ))}
-          <h3>Signals</h3>
+          {(robot.value?.inputs ?? []).some(isSignal) && <h3>Signals</h3>}
           {(robot.value?.inputs ?? []).map(
             (input, place) =>
               isSignal(input) && (

@@ -114,6 +114,15 @@ export async function showsWhatIsSaidOfTheNewestText() {
     const text = page.locator('.cm-content')
     const status = page.locator('.bar [role="status"]').last()
     await status.filter({ hasText: 'no errors' }).waitFor()
+    // Before the first answer it is not said to be right.
+    const first = []
+    await page.route('**/api/rules/ask', (route) => first.push(route))
+    await page.reload()
+    await expectSoon(() => first.length > 0, 'the file is not checked')
+    await status.filter({ hasText: 'being checked' }).waitFor()
+    await Promise.all(first.splice(0).map((route) => route.continue()))
+    await status.filter({ hasText: 'no errors' }).waitFor()
+    await page.unroute('**/api/rules/ask')
     const held = []
     await page.route('**/api/rules/ask', (route) => (route.request().postDataJSON().method === 'textDocument/codeAction' ? held.push(route) : route.continue()))
     // Gives the question whether what was written is right.

@@ -281,6 +281,12 @@ async function plotsSignals(page, server, album) {
   expect(first.split(',').length === head.split(',').length && first.includes('120'), `the table has this first row: ${first}`)
   const painted = await saved(page, () => page.getByRole('button', { name: 'Save as picture' }).click())
   expect(painted.content.subarray(1, 4).toString() === 'PNG', 'the picture is none')
+  // Rules read a rate over a window of time; the plot is of the topic.
+  const address = new URL(page.url()).hash
+  await page.evaluate(() => (location.hash = 'plots/s=rate+/depth&s=input+rate(/depth,+2s)&last=120'))
+  await page.getByRole('img', { name: 'rate of /depth (threshold 7 Hz), rate(/depth, 2s) (threshold 7 Hz) over time' }).waitFor()
+  await page.evaluate((hash) => (location.hash = hash), address)
+  await chosen.getByRole('button', { name: 'Remove memory of camera' }).waitFor()
   // A link shows the same to others: signals and time.
   const shown = await page.locator('.plots .muted').first().innerText()
   await page.reload()

@@ -15,7 +15,7 @@ const kRules = [
 export const kRobot = {
   robot: 'rover', cycle_s: 0.2,
   components: kComponents.map((name) => ({ name, can_start: true, node: `/${name}`, owner: 'culprit, by its LAUNCH command' })),
-  topics: kTopics, inputs: ['alive(camera)', 'age(/fused)', 'segmentation_entropy'], thresholds: [[], [0.5], [0.06]], rules: kRules,
+  topics: kTopics, inputs: ['alive(camera)', 'age(/fused)', 'segmentation_entropy', 'rate(/depth, 2s)'], thresholds: [[], [0.5], [0.06], [7]], rules: kRules,
 }
 export const kGraph = {
   nodes: [
@@ -55,7 +55,7 @@ export const state = (t, { dead = null, incidents = [], overview = null, held = 
   components: kComponents.map((name) => ({
     ...lookOf(name, dead, rules, overview?.look === 'DEAF'), ...held[name], present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active' })),
   topics: kTopics.map((_, i) => ({ rate: 10 + i, age: dead && i !== 1 ? t - kBroken : 0.05 })),
-  inputs: [!dead, 0.1, 0.04], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), priors: kRules.flatMap((r) => r.strategies.map((s) => s.prior)),
+  inputs: [!dead, 0.1, 0.04, 11], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), priors: kRules.flatMap((r) => r.strategies.map((s) => s.prior)),
 })
 
 const event = (t, type, label, severity, tone, text, more) => ({ t, clock: kBegan + t, type, label, severity, tone, text, ...more })

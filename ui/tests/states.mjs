@@ -151,6 +151,12 @@ async function everyState(page, server) {
     expect((await explanation.getByText('All is well').count()) === 0, `it says that all is well (${name})`)
     await isAccessible(page)
   }
+  // A blind rule hides no known cause: that stands first.
+  server.anew()
+  play(server, { ...kStates.warning, state: { ...kStates.warning.state, FusionSilent: kBlindStates['watching-nothing'].state.FusionSilent } })
+  const titles = page.getByRole('region', { name: 'Explanation' }).getByRole('heading', { level: 2 })
+  await titles.filter({ hasText: 'FusionSilent is blind' }).waitFor()
+  expect((await titles.first().innerText()).includes('SegmentationBad fails'), `this stands first: ${await titles.first().innerText()}`)
   await loads(page, server)
   // The server is gone: the page says so at once, and turns grey for all readers.
   server.anew()
