@@ -117,14 +117,15 @@ class Checker {
 
   // "75.0 -- degrees", which reads as two signs
   bool is_comment(const syntax::Expression& e) {
-    using Kind = syntax::Expression::Kind;
-    if (e.kind != Kind::kBinary || e.op != syntax::Operator::kSubtract) return false;
+    if (e.kind != syntax::Expression::Kind::kBinary || e.op != syntax::Operator::kSubtract)
+      return false;
     const syntax::Expression& right = e.children[1];
     const std::uint32_t signs = right.span.begin - 1;
     const bool is_so =
-        right.kind == Kind::kUnary && right.op == syntax::Operator::kNegate &&
-        right.children[0].kind == Kind::kName && e.children[0].span.end + 1 == signs &&
-        right.children[0].span.begin > signs + 2 && !symbols_.constant(right.children[0].name.text);
+        right.kind == syntax::Expression::Kind::kUnary && right.op == syntax::Operator::kNegate &&
+        right.children[0].kind == syntax::Expression::Kind::kName &&
+        e.children[0].span.end + 1 == signs && right.children[0].span.begin > signs + 2 &&
+        !symbols_.constant(right.children[0].name.text);
     if (is_so)
       diagnostics_.push_back({Code::kExtraText,
                               Severity::kError,
