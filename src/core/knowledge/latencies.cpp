@@ -43,7 +43,7 @@ bool only_reports_the_same(const Rule& rule, const Input& input, const RuleSet& 
          });
 }
 
-// Of the strategies that are `wanted`.
+// The least impact that a `wanted` strategy has.
 Duration least_impact(const Rule& rule, const RuleSet& rules, auto wanted) {
   std::optional<Cycles> least;
   for (const StrategyId id : rule.strategies) {
