@@ -368,6 +368,11 @@ struct SharedPort : testing::Test {
     EXPECT_EQ(times_together(journal), 2) << transcript(robot);
   }
   const Coincidences& known() { return robot.manager().knowledge().coincidences; }
+  // All of it, by name.
+  std::vector<journal::LearnedCoincidence> counts() {
+    const RuleSet& rules = robot.manager().knowledge().rules;
+    return journal::named(known(), Coincidences(rules), rules);
+  }
 
   const TestFolder folder;
   TestRobot robot{kSharedPort};
@@ -387,18 +392,18 @@ TEST_F(SharedPort, ThatFailuresBeganTogetherIsKnownToTheNextProcess) {
   Life first(folder / "first.journal", robot, kSharedPort);
   robot.discover();
   fail_twice(folder / "first.journal");
-  const Coincidences before = known();
+  const auto before = counts();
   first.die_after(0, true);
   robot.leave("lidar");
   for (int i = 0; i < 60 && !first.is_dead(); ++i) measure(1, 1s);
   ASSERT_TRUE(first.is_dead());
   {
     const Life second(first.remains(), robot, kSharedPort);
-    EXPECT_EQ(known(), before);
+    EXPECT_EQ(counts(), before);
     measure(1, 10s);
     for (const RuleId rule : {RuleId(0), RuleId(1)})
       EXPECT_NE(robot.manager().knowledge().states[rule].phase, RulePhase::kQuiet);
-    EXPECT_EQ(known(), before) << "the next process detects them, but they have not begun again";
+    EXPECT_EQ(counts(), before) << "the next process detects them, but they have not begun again";
   }
   const journal::Reader reader = value_of(journal::Reader::open(first.remains()));
   Recording recording = value_of(Recording::open(reader));
