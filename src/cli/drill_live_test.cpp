@@ -256,7 +256,7 @@ TEST_F(Drill, AFaultThatIsLeftAndCannotBeUndoneKeepsItFromInjecting) {
 
 TEST_F(Drill, AnAbortConditionThatTheFaultHidesEndsTheDrill) {
   std::ofstream(rules, std::ios::app)
-      << "SIGNAL focus DIAGNOSTIC camera KEY autofocus_needed STALE 500ms\n";
+      << "SIGNAL focus DIAGNOSTIC camera KEY autofocus_needed STALE 1500ms\n";
   TestProgram program(
       world, drill({"--only", "camera", "--kinds", "hang", "--times", "3", "--abort", "focus"}));
   EXPECT_EQ(program.wait(90s), 1) << program.output();
