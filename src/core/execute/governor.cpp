@@ -430,7 +430,8 @@ std::optional<Governor::Held> Governor::restraint_by_person(StrategyId id) const
                     (silence.reason.empty() ? "" : ": " + silence.reason),
                 silence.until};
   }
-  if (refused_[id.index] == knowledge_.states[strategy.rule].failing_since)
+  const Time refused = refused_[id.index];
+  if (refused != kNever && refused == knowledge_.states[strategy.rule].failing_since)
     return Held{Restraint::kRefused, "a person refused it", kNever};
   return std::nullopt;
 }

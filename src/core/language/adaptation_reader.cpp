@@ -183,10 +183,11 @@ class AdaptationReader {
     const Span first = s.peek().span;
     const std::string_view rest = source_.text(s.rest());
     const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
-    const std::string number(word.substr(0, word.find('m')));
-    const bool is_so = word.find('m') != std::string_view::npos && !number.empty() &&
-                       number.find_first_not_of("0123456789.") == std::string::npos &&
-                       (word.ends_with('m') || word.find('/') != std::string_view::npos);
+    const std::string number(word.substr(0, word.find_first_not_of("0123456789.")));
+    constexpr std::array<std::string_view, 8> kUnits = {"m",   "cm",    "mm",   "km",
+                                                        "m/s", "m/s^2", "cm/s", "km/h"};
+    const bool is_so =
+        !number.empty() && std::ranges::find(kUnits, word.substr(number.size())) != kUnits.end();
     const Span all{first.begin, first.begin + static_cast<std::uint32_t>(word.size())};
     return is_so && !read_.fail(Code::kBadToken, all, "ROS parameters have no unit",
                                 "write " + number + ", in the unit that the node expects",

@@ -133,7 +133,7 @@ RULE A
   robot["a"].fault = "redeploy";
   robot.run_for(1min);
   EXPECT_TRUE(robot.was_asked("a: stop process")) << transcript(robot);
-  EXPECT_TRUE(robot.was_asked("a: set safe")) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("a: read parameter safe")) << transcript(robot);
   EXPECT_EQ(robot.count("a stays down"), 0u) << transcript(robot);
   EXPECT_TRUE(robot.works("a")) << transcript(robot);
 }
