@@ -26,7 +26,7 @@ Expected<void> append(const std::filesystem::path& path, const std::string& line
   const auto failure = [&] {
     return Error{"cannot write '" + path.string() + "': " + std::strerror(errno)};
   };
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   if (file < 0) return failure();
   // A line that was cut before stays alone.
   const off_t size = lseek(file, 0, SEEK_END);
