@@ -254,18 +254,6 @@ TEST_F(Drill, AFaultThatIsLeftAndCannotBeUndoneKeepsItFromInjecting) {
   EXPECT_EQ((*kept)->faults, std::vector{left});
 }
 
-TEST_F(Drill, AnAbortConditionThatTheFaultHidesEndsTheDrill) {
-  std::ofstream(rules, std::ios::app)
-      << "SIGNAL focus DIAGNOSTIC camera KEY autofocus_needed STALE 1500ms\n";
-  TestProgram program(
-      world, drill({"--only", "camera", "--kinds", "hang", "--times", "3", "--abort", "focus"}));
-  EXPECT_EQ(program.wait(90s), 1) << program.output();
-  EXPECT_THAT(program.output(), HasSubstr("[1/3] hang camera: proves nothing, ABORT focus"));
-  EXPECT_THAT(program.output(), HasSubstr("is unknown"));
-  EXPECT_THAT(program.output(), testing::Not(HasSubstr("[2/3]")));
-  EXPECT_FALSE(has_record_of_injected());
-}
-
 TEST_F(Drill, EndsWhenCulpritIsPausedAndInjectsNothingMore) {
   TestProgram program(
       world, drill({"--only", "camera", "--kinds", "kill", "--times", "9", "--patience", "5"}));
