@@ -254,6 +254,23 @@ TEST_F(Drill, AFaultThatIsLeftAndCannotBeUndoneKeepsItFromInjecting) {
   EXPECT_EQ((*kept)->faults, std::vector{left});
 }
 
+TEST_F(Drill, AnAbortConditionThatTheFaultHidesEndsTheDrill) {
+  std::string text = kDrillRules;
+  const std::string_view policy = "POLICIES ERROR";
+  text.insert(text.find(policy) + policy.size(),
+              " FOR 20s");  // so that the camera hangs until the drill ends that
+  std::ofstream(rules) << text
+                       << "SIGNAL beat TOPIC /diagnostics FIELD header.stamp.sec FROM camera"
+                          " STALE 1500ms\n";
+  TestProgram program(
+      world, drill({"--only", "camera", "--kinds", "hang", "--times", "3", "--abort", "beat < 0"}));
+  EXPECT_EQ(program.wait(90s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("[1/3] hang camera: proves nothing, ABORT beat < 0"));
+  EXPECT_THAT(program.output(), HasSubstr("is unknown"));
+  EXPECT_THAT(program.output(), testing::Not(HasSubstr("[2/3]")));
+  EXPECT_FALSE(has_record_of_injected());
+}
+
 TEST_F(Drill, EndsWhenCulpritIsPausedAndInjectsNothingMore) {
   TestProgram program(
       world, drill({"--only", "camera", "--kinds", "kill", "--times", "9", "--patience", "5"}));
