@@ -246,6 +246,7 @@ function(culprit_library path)
   endif()
   culprit_check_headers(${folder}_test_headers FOLDER ${dir} HEADERS ${test_headers}
                         USES ${with} ${ARG_LIVE_TEST_USES} ${ARG_TEST_PACKAGES} GTest::gtest GTest::gmock rapidcheck culprit_test_options)
+  culprit_compile_together(${folder}_test 10 ${CMAKE_CURRENT_SOURCE_DIR} ${tests}) # in each preset the same files, so that names that clash are seen in each
   if(ARG_TEST_ONE_THREAD AND CULPRIT_SANITIZE STREQUAL "thread")
     list(TRANSFORM ARG_TEST_ONE_THREAD PREPEND ${dir}/)
     list(TRANSFORM ARG_TEST_ONE_THREAD APPEND _test.cpp)
@@ -272,9 +273,13 @@ endfunction()
 
 # culprit_compile_together(<target> <most> <folder> <file>...): where CMAKE_UNITY_BUILD is set, the files of one folder are compiled so many at a time; 40 in
 # place of 10 take half the time. Those of its subfolders are compiled apart, for they are often variants of one thing and call their parts by the same
-# names; so do tests, ten at a time.
+# names; so do tests, ten at a time. A file stays in the group that it was given first.
 function(culprit_compile_together target most dir)
   foreach(file ${ARGN})
+    get_source_file_property(together ${file} UNITY_GROUP)
+    if(together)
+      continue()
+    endif()
     get_filename_component(group ${file} DIRECTORY)
     file(RELATIVE_PATH group ${dir} ${group})
     string(MAKE_C_IDENTIFIER "part_${group}" group)

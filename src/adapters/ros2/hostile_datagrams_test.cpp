@@ -16,7 +16,6 @@ namespace culprit::ros2 {
 namespace {
 
 constexpr std::int64_t kFarAhead = std::int64_t{1} << 60;
-const Bytes kSmall{0, 1, 0, 0, 1, 2, 3, 4};
 
 std::size_t resident_bytes() {
   std::size_t total = 0;
@@ -48,13 +47,6 @@ class Attacker {
   const int socket_ = socket(AF_INET, SOCK_DGRAM, 0);
 };
 
-std::unique_ptr<Participant> join(
-    const TestDomain& domain, DiscoveryCallback on_discovery = [](DiscoveryEvent) {}) {
-  auto participant = Participant::create(domain.options(), std::move(on_discovery));
-  if (!participant) throw std::runtime_error(participant.error());
-  return std::move(*participant);
-}
-
 class HostileDatagrams : public testing::Test {
  protected:
   HostileDatagrams() {
@@ -82,7 +74,7 @@ class HostileDatagrams : public testing::Test {
   }
   // Whether the robot's samples arrive.
   bool speaks() {
-    const auto sequence = writer->write(kSmall);
+    const auto sequence = writer->write(kSmallPayload);
     return sequence && samples.wait_for_one([&](std::int64_t heard) { return heard == *sequence; });
   }
   // Whether another writer of the robot is found.

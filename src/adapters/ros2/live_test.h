@@ -44,6 +44,15 @@ class TestDomain {
   DomainLock lock_ = reserve();
 };
 
+inline std::unique_ptr<Participant> join(
+    const TestDomain& domain, DiscoveryCallback on_discovery = [](DiscoveryEvent) {}) {
+  auto participant = Participant::create(domain.options(), std::move(on_discovery));
+  if (!participant) throw std::runtime_error(participant.error());
+  return std::move(*participant);
+}
+
+inline const Bytes kSmallPayload{0, 1, 0, 0, 1, 2, 3, 4};
+
 // A context whose executor runs on a thread of its own.
 class LiveContext {
  public:

@@ -23,13 +23,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::unique_ptr<Participant> join(
-    const TestDomain& domain, DiscoveryCallback on_discovery = [](DiscoveryEvent) {}) {
-  auto participant = Participant::create(domain.options(), std::move(on_discovery));
-  if (!participant) throw std::runtime_error(participant.error());
-  return std::move(*participant);
-}
-
 struct Received {
   Bytes payload;
   std::size_t size;
@@ -81,16 +74,14 @@ struct Pair {
   std::unique_ptr<Reader> reader;
 };
 
-const Bytes kSmall{0, 1, 0, 0, 1, 2, 3, 4};
-
 TEST(Participant, BytesArriveAsTheyWereWritten) {
   Pair pair;
-  const auto sequence = pair.writer->write(kSmall);
+  const auto sequence = pair.writer->write(kSmallPayload);
   ASSERT_TRUE(sequence);
   ASSERT_TRUE(pair.received.wait_for_count(1));
   const Received sample = pair.received.all().front();
-  EXPECT_EQ(sample.payload, kSmall);
-  EXPECT_EQ(sample.size, kSmall.size());
+  EXPECT_EQ(sample.payload, kSmallPayload);
+  EXPECT_EQ(sample.size, kSmallPayload.size());
   EXPECT_EQ(sample.identity, (SampleIdentity{pair.writer->guid(), *sequence}));
   EXPECT_EQ(sample.related, SampleIdentity{});
   EXPECT_LE(sample.sent, sample.received);
@@ -131,14 +122,14 @@ TEST(Participant, ALeavingParticipantSaysOneGoodbyeForAllThatItHad) {
 TEST(Participant, TheRelatedIdentityTravelsAlong) {
   Pair pair;
   const SampleIdentity related{pair.reader->guid(), (std::int64_t{5} << 32) | 7};
-  pair.writer->write(kSmall, related);
+  pair.writer->write(kSmallPayload, related);
   ASSERT_TRUE(pair.received.wait_for_count(1));
   EXPECT_EQ(pair.received.all().front().related, related);
 }
 
 TEST(Participant, SequenceNumbersCountWhatWasWritten) {
   Pair pair;
-  for (int i = 0; i < 5; ++i) pair.writer->write(kSmall);
+  for (int i = 0; i < 5; ++i) pair.writer->write(kSmallPayload);
   ASSERT_TRUE(pair.received.wait_for_count(5));
   const auto samples = pair.received.all();
   EXPECT_EQ(samples.back().identity.sequence - samples.front().identity.sequence, 4);
@@ -146,10 +137,10 @@ TEST(Participant, SequenceNumbersCountWhatWasWritten) {
 
 TEST(Participant, AReaderOfHeadersCopiesNoPayload) {
   Pair pair({}, PayloadUse::kHeader);
-  pair.writer->write(kSmall);
+  pair.writer->write(kSmallPayload);
   ASSERT_TRUE(pair.received.wait_for_count(1));
   EXPECT_TRUE(pair.received.all().front().payload.empty());
-  EXPECT_EQ(pair.received.all().front().size, kSmall.size());
+  EXPECT_EQ(pair.received.all().front().size, kSmallPayload.size());
 }
 
 TEST(Participant, AReaderOfBeginningsCopiesOnlyThose) {
@@ -157,12 +148,12 @@ TEST(Participant, AReaderOfBeginningsCopiesOnlyThose) {
   Bytes large(5000, 7);
   large[0] = 0;
   pair.writer->write(large);
-  pair.writer->write(kSmall);
+  pair.writer->write(kSmallPayload);
   ASSERT_TRUE(pair.received.wait_for_count(2));
   large.resize(kBeginningSize);
   EXPECT_EQ(pair.received.all()[0].payload, large);
   EXPECT_EQ(pair.received.all()[0].size, 5000u);
-  EXPECT_EQ(pair.received.all()[1].payload, kSmall);
+  EXPECT_EQ(pair.received.all()[1].payload, kSmallPayload);
 }
 
 // Most of it comes past the middleware, and as it would come through it.
@@ -171,14 +162,14 @@ void hears_all_in_its_order(PayloadUse use, std::size_t given_of_large) {
   Bytes large(5000, 7);
   large[0] = 0;
   const SystemTime before = std::chrono::system_clock::now();
-  for (int i = 0; i < 50; ++i) pair.writer->write(i % 2 == 0 ? large : kSmall);
+  for (int i = 0; i < 50; ++i) pair.writer->write(i % 2 == 0 ? large : kSmallPayload);
   ASSERT_TRUE(pair.received.wait_for_count(50));
   const SystemTime after = std::chrono::system_clock::now();
   large.resize(given_of_large);
   const auto all = pair.received.all();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_EQ(all[i].payload, i % 2 == 0 ? large : kSmall);
-    EXPECT_EQ(all[i].size, i % 2 == 0 ? 5000u : kSmall.size());
+    EXPECT_EQ(all[i].payload, i % 2 == 0 ? large : kSmallPayload);
+    EXPECT_EQ(all[i].size, i % 2 == 0 ? 5000u : kSmallPayload.size());
     EXPECT_EQ(all[i].identity.writer, pair.writer->guid());
     EXPECT_EQ(all[i].identity.sequence, static_cast<std::int64_t>(i + 1));
     EXPECT_LE(before, all[i].sent + std::chrono::microseconds(1));
@@ -230,10 +221,10 @@ TEST(Participant, LargePayloadsArriveWhole) {
   std::iota(large.begin(), large.end(), std::uint8_t{0});
   large[0] = 0, large[1] = 1;
   pair.writer->write(large);
-  pair.writer->write(kSmall);  // a reader's buffer that has grown does not show
+  pair.writer->write(kSmallPayload);  // a reader's buffer that has grown does not show
   ASSERT_TRUE(pair.received.wait_for_count(2));
   EXPECT_EQ(pair.received.all()[0].payload, large);
-  EXPECT_EQ(pair.received.all()[1].payload, kSmall);
+  EXPECT_EQ(pair.received.all()[1].payload, kSmallPayload);
 }
 
 TEST(Participant, APayloadWithoutEncapsulationIsRefused) {
@@ -253,7 +244,7 @@ TEST(Participant, ABestEffortReaderMatchesAReliableWriter) {
   ASSERT_TRUE(watcher);
   ASSERT_TRUE(matches.wait_for_count(1));
   ASSERT_TRUE(pair.writer_matches.wait_for_count(2));
-  pair.writer->write(kSmall);
+  pair.writer->write(kSmallPayload);
   EXPECT_TRUE(received.wait_for_count(1));
 }
 
@@ -262,7 +253,7 @@ TEST(Participant, TransientLocalSamplesReachLateReaders) {
   const auto sender = join(domain);
   const auto writer = sender->create_writer({"t", "T", qos::kDiscoveryInfoWriter, "", {}});
   ASSERT_TRUE(writer);
-  (*writer)->write(kSmall);
+  (*writer)->write(kSmallPayload);
   const auto receiver = join(domain);
   EventLog<Received> received;
   const auto reader = receiver->create_reader(
@@ -310,9 +301,9 @@ TEST(Participant, AReaderWithKeysHearsAllSamplesOfAWriterWithKeys) {
   Pair pair({.keys = Keys::kSome});
   EXPECT_TRUE(pair.writer->guid().has_keys());
   EXPECT_TRUE(pair.reader->guid().has_keys() && pair.reader->guid().is_reader());
-  for (int i = 0; i < 5; ++i) pair.writer->write(kSmall);
+  for (int i = 0; i < 5; ++i) pair.writer->write(kSmallPayload);
   ASSERT_TRUE(pair.received.wait_for_count(5));
-  EXPECT_EQ(pair.received.all().back().payload, kSmall);
+  EXPECT_EQ(pair.received.all().back().payload, kSmallPayload);
 }
 
 TEST(Participant, WhetherATopicHasKeysIsPartOfWhatItIs) {
@@ -500,7 +491,7 @@ TEST(Participant, WhatItNeverMeetsHoldsUpNothingElse) {
     for (const char* topic : {"never", "more", "met"})
       writers.push_back(
           std::move(*sender->create_writer({topic, "T", qos::kDiscoveryInfoWriter, "", {}})));
-    writers.back()->write(kSmall);
+    writers.back()->write(kSmallPayload);
     EXPECT_TRUE(received.wait_for_count(i)) << i;
     writers.erase(writers.begin(), writers.begin() + 2);
   }
@@ -624,7 +615,7 @@ TEST(Participant, ReadersComeAndGoWhileSamplesFlow) {
   Pair pair;
   std::atomic<bool> stop = false;
   std::thread writing([&] {
-    while (!stop) pair.writer->write(kSmall);
+    while (!stop) pair.writer->write(kSmallPayload);
   });
   for (int i = 0; i < 20; ++i) {
     EventLog<Received> received;
