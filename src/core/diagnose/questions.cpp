@@ -15,6 +15,12 @@ bool may_be_asked_again(const Questioned& questioned, Time now) {
   return !is_open(questioned, now) && now >= later(questioned.at, kAskedAgain);
 }
 
+// As may_be_asked_again(), but for the second question after a first one in vain.
+bool may_be_asked_at_once(const Questioned& questioned, Time now) {
+  const bool is_second = questioned.unanswered == questioned.at && !questioned.is_open;
+  return is_second || may_be_asked_again(questioned, now);
+}
+
 // When each component proved last that it works: it joined the graph, it answered, or a message came
 // on a topic that it alone publishes.
 std::vector<Time> last_signs(const Knowledge& knowledge) {
@@ -78,6 +84,22 @@ std::size_t open_questions(const Knowledge& knowledge) {
   return open;
 }
 
+// Asks the silent ones, as far as that is allowed now.
+void ask(std::span<const ComponentId> silent, const Knowledge& knowledge,
+         bool (*is_allowed)(const Questioned&, Time now), Questions& questions) {
+  std::size_t open = open_questions(knowledge);
+  for (const ComponentId c : silent) {
+    const Questioned& questioned = knowledge.components[c].questioned;
+    const bool is_asked_now = open < kMostQuestions && is_allowed(questioned, knowledge.now);
+    if (is_asked_now) {
+      questions.asks.push_back(c);
+      ++open;
+    }
+    if (!questions.awaited && (is_asked_now || is_open(questioned, knowledge.now)))
+      questions.awaited = c;
+  }
+}
+
 // The publisher of messages that are lost is asked, whether it is upstream of the failure or its cause.
 void ask_publisher(const Lost& lost, RuleId failure, const Knowledge& knowledge,
                    Questions& questions) {
@@ -117,19 +139,32 @@ Questions questions_about(RuleId failure, std::span<const std::optional<TroubleS
     return knowledge.rules[a].name < knowledge.rules[b].name;
   });
   keep_nearest(silent, failure, knowledge);
-  std::size_t open = open_questions(knowledge);
-  for (const ComponentId c : silent) {
-    const Questioned& questioned = knowledge.components[c].questioned;
-    const bool is_asked_now =
-        open < kMostQuestions && may_be_asked_again(questioned, knowledge.now);
-    if (is_asked_now) {
-      questions.asks.push_back(c);
-      ++open;
-    }
-    if (!questions.awaited && (is_asked_now || is_open(questioned, knowledge.now)))
-      questions.awaited = c;
-  }
+  ask(silent, knowledge, may_be_asked_again, questions);
   return questions;
+}
+
+Questions questions_to(std::span<const ComponentId> components, RuleId failure,
+                       const Knowledge& knowledge) {
+  Questions questions;
+  std::vector<ComponentId> silent;
+  const Time begun = later(onset_of(failure, knowledge).latest, kProvesHealth);
+  for (const ComponentId c : components) {
+    const ComponentState& state = knowledge.components[c];
+    if (state.answers_probes && state.answered < begun && !answers_no_question(state) &&
+        can_be_asked(c, knowledge))
+      silent.push_back(c);
+  }
+  if (silent.empty()) return questions;
+  const std::vector<Time> signs = last_signs(knowledge);
+  std::erase_if(silent, [&](ComponentId c) { return signs[c.index] >= begun; });
+  ask(silent, knowledge, may_be_asked_at_once, questions);
+  return questions;
+}
+
+bool answers_no_question(const ComponentState& state) {
+  const Questioned& questioned = state.questioned;
+  return state.answers_probes && questioned.unanswered && !questioned.is_open &&
+         questioned.at > *questioned.unanswered;
 }
 
 bool is_overdue(ComponentId component, const Knowledge& knowledge) {

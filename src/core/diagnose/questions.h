@@ -1,10 +1,13 @@
-// Which components are asked whether they answer, before something is taken down.
+// Which components are asked whether they answer, before something is taken down, or asked to change.
 //
 // A supplier that hangs is found by periodic questions only after several went unanswered; until then
 // its consumer looks like the cause. So before a failure is repaired by taking something down, those
 // upstream are asked that gave no sign of life since it began, the nearest first. Asked are only
 // components that can answer as far as is known: one that never did, and was asked in vain, is not
 // asked again, and is not taken to hang.
+//
+// Those that a strategy would send requests to are asked as well. One that answers no question lets such requests
+// time out, one strategy after another, before its process is replaced.
 #pragma once
 
 #include <optional>
@@ -39,6 +42,13 @@ struct Questions {
 // Before something is taken down for the failure. `troubles`: by component.
 Questions questions_about(RuleId failure, std::span<const std::optional<TroubleSeen>> troubles,
                           const Knowledge& knowledge);
+
+// Before requests are sent to these components for the failure: of those that answered ever, and gave no sign of life since
+// the failure began. Asked in vain, one is asked a second time at once.
+Questions questions_to(std::span<const ComponentId> components, RuleId failure,
+                       const Knowledge& knowledge);
+// Was the component asked twice in vain, since it answered last?
+bool answers_no_question(const ComponentState& state);
 
 // Was the component asked in vain, so that it presumably hangs: it answered before, and gave no sign
 // of life since?

@@ -161,5 +161,58 @@ TEST_F(AMap, HungWhenTwoProbesGotNoAnswerAndItsLastMessageHadCome) {
   EXPECT_EQ(began(), Time(99s));
 }
 
+// A component that a strategy would send requests to, because of its failure of the 90th second.
+class ASuspect : public AMap {
+ protected:
+  ASuspect() {
+    nav().answers_probes = true;
+    nav().answered = Time(80s);
+  }
+  ComponentState& nav() { return state("nav"); }
+  Questions questions() {
+    const std::vector<ComponentId> own{scene_.component("nav")};
+    return questions_to(own, scene_.rule("Nav"), *scene_);
+  }
+  void asked_in_vain_at(Time at) {
+    nav().questioned.at = at;
+    if (!nav().questioned.unanswered) nav().questioned.unanswered = at;
+  }
+};
+
+TEST_F(ASuspect, IsAskedIfItGaveNoSignOfLifeSinceItsFailure) {
+  EXPECT_EQ(questions().asks, std::vector{scene_.component("nav")});
+  EXPECT_EQ(questions().awaited, scene_.component("nav"));
+  nav().answered = Time(91s);
+  EXPECT_FALSE(questions().awaited);
+}
+
+TEST_F(ASuspect, ThatNeverAnsweredIsNotAsked) {
+  nav().answers_probes = false;
+  EXPECT_FALSE(questions().awaited) << "its requests wait for no answer that never comes";
+}
+
+TEST_F(ASuspect, IsWaitedForWhileItMayAnswer) {
+  nav().questioned.at = scene_->now;
+  nav().questioned.is_open = true;
+  EXPECT_TRUE(questions().asks.empty());
+  EXPECT_EQ(questions().awaited, scene_.component("nav"));
+}
+
+TEST_F(ASuspect, IsAskedASecondTimeAtOnceAndNoThirdTime) {
+  asked_in_vain_at(scene_->now - 600ms);
+  EXPECT_FALSE(answers_no_question(nav())) << "one answer may be late";
+  EXPECT_EQ(questions().asks.size(), 1u);
+  asked_in_vain_at(scene_->now);
+  EXPECT_TRUE(answers_no_question(nav()));
+  EXPECT_TRUE(questions().asks.empty());
+  EXPECT_FALSE(questions().awaited);
+}
+
+TEST_F(ASuspect, ThatSendsItsTopicsIsNotAsked) {
+  scene_->graph.endpoint_appeared("/nav", EndpointKind::kPublisher, "/cmd");
+  scene_->signals.set_rhythm(TopicId(0u), {Time(91s), 100ms, 100ms, 1h});
+  EXPECT_FALSE(questions().awaited);
+}
+
 }  // namespace
 }  // namespace culprit::diagnose

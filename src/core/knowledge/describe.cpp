@@ -63,9 +63,10 @@ class Describer {
   std::string operator()(const FailureHeldBack& e) const {
     if (e.candidates.empty()) return "";
     // The reason why it waits: a strategy that was tried or is not possible would not be next in any
-    // case. RoundSpent and RuleExhausted say that all were tried.
+    // case, nor one in place of which another one waits. RoundSpent and RuleExhausted say that all were tried.
     const auto is_out = [](const Candidate& c) {
-      return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
+      return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid ||
+             c.excluded == Condition::kOneEach;
     };
     const auto waiting = std::find_if_not(e.candidates.begin(), e.candidates.end(), is_out);
     const auto impossible = std::ranges::find_if(e.candidates, [&](const Candidate& c) {

@@ -66,6 +66,8 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
   const std::string& strategy = rules[candidate.strategy].name;
   const std::string& component = rules[candidate.component].name;
   const std::string because = candidate.failure ? " (" + rules[*candidate.failure].name + ")" : "";
+  const auto& own = rules[candidate.strategy].components;
+  const bool is_own = std::binary_search(own.begin(), own.end(), candidate.component);
   if (!candidate.excluded) return strategy + " is chosen";
   switch (*candidate.excluded) {
     case Condition::kTried:
@@ -78,8 +80,6 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
       return component + " is affected by a strategy chosen just now";
     case Condition::kDependency:
       if (!candidate.failure && !candidate.remark.empty()) {
-        const auto& own = rules[candidate.strategy].components;
-        const bool is_own = std::binary_search(own.begin(), own.end(), candidate.component);
         return is_own ? component + " " + candidate.remark
                       : "it depends on " + component + ", which " + candidate.remark;
       }
@@ -90,7 +90,8 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
       return "it depends on " + component + ", which is being adapted" + because;
     case Condition::kSuspect:
       if (!candidate.remark.empty())
-        return "it depends on " + component + ", which was " + candidate.remark;
+        return is_own ? component + " was " + candidate.remark
+                      : "it depends on " + component + ", which was " + candidate.remark;
       return "it depends on " + component + ", which may still prove to be the cause" + because;
     case Condition::kSettling:
       if (candidate.failure == rules[candidate.strategy].rule) return candidate.remark;
@@ -101,12 +102,9 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
       return strategy + " would delay the repair of " + rules[*candidate.failure].name;
     case Condition::kWithheld:
       return strategy + " is withheld: " + candidate.remark;
-    case Condition::kUnheard: {
-      const auto& own = rules[candidate.strategy].components;
-      const bool is_own = std::binary_search(own.begin(), own.end(), candidate.component);
+    case Condition::kUnheard:
       return is_own ? component + " " + candidate.remark
                     : "it depends on " + component + ", which " + candidate.remark;
-    }
   }
   return "";
 }

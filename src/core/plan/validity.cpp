@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "diagnose/questions.h"
 #include "diagnose/timing.h"
 #include "knowledge/group_health.h"
 #include "knowledge/held.h"
@@ -53,8 +54,9 @@ bool owes_answers(ComponentId component, const Knowledge& knowledge) {
   constexpr int kUnanswered = 2;
   constexpr Duration kVerdict = std::chrono::milliseconds(1900);  // as answer_to_come() waits
   const ComponentState& state = knowledge.components[component];
-  return state.answers_probes && state.missed_probes >= kUnanswered &&
-         state.changes_until == kNever && later(state.answered, kVerdict) <= knowledge.now &&
+  const bool missed = state.answers_probes && state.missed_probes >= kUnanswered &&
+                      later(state.answered, kVerdict) <= knowledge.now;
+  return (missed || diagnose::answers_no_question(state)) && state.changes_until == kNever &&
          !knowledge.heard_topic(component, knowledge.now);
 }
 

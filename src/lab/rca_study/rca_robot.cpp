@@ -63,6 +63,7 @@ void RcaRobot::appear(std::size_t component) {
   const ComponentId id(component);
   tell(ProcessSeen{id, ProcessState::kRunning, body.pid, ""});
   tell(NodeAppeared{node_of(scenario_.components[component]), body.pid});
+  tell(Probed{id, true});
   tell(LifecycleRead{id, body.state});
   if (parameters_[component])
     tell(ParameterRead{*parameters_[component], *body.parameter(kTuning)});

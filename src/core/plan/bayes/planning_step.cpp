@@ -30,6 +30,19 @@ int redeployments(const Strategy& strategy) {
                     [](const Adaptation& a) { return a.type == AdaptationType::kRedeploy; }));
 }
 
+// The components of which a node has to answer, so that the strategy can be carried out.
+std::vector<ComponentId> sends_requests_to(const Strategy& strategy) {
+  std::vector<ComponentId> found;
+  for (const Adaptation& a : strategy.adaptations) {
+    const bool is_request =
+        syntax::names_parameter(a.type) || a.type == AdaptationType::kActivate ||
+        a.type == AdaptationType::kDeactivate || a.type == AdaptationType::kRestart;
+    if (is_request && std::ranges::find(found, a.component) == found.end())
+      found.push_back(a.component);
+  }
+  return found;
+}
+
 // Are its adaptations those of the other one? Values of parameters are not compared.
 bool does_the_same(const Strategy& a, const Strategy& b) {
   const auto is_same = [](const Adaptation& one, const Adaptation& other) {
@@ -67,6 +80,7 @@ std::vector<Decision> PlanningStep::run() {
     select(level);
   go_round();
   await_answers();
+  ask_suspects();
   ask_again();
   return decisions();
 }
@@ -259,17 +273,39 @@ void PlanningStep::await_answers() {
       exclude(*weighed, {Condition::kDependency, questions.lost->publisher, {}});
       weighed->candidate.remark = diagnose::in_words(*questions.lost, knowledge_);
     }
-    if (!questions.awaited) continue;
-    exclude(*weighed, {Condition::kSuspect, *questions.awaited, {}});
-    weighed->candidate.remark = "asked whether it answers";
-    // One that never answered is not taken to hang.
-    const ComponentState& asked = knowledge_.components[*questions.awaited];
-    if (!asked.answers_probes) continue;
-    const bool is_asked_now = std::ranges::find(asks_[weighed->failure], *questions.awaited) !=
-                              asks_[weighed->failure].end();
-    const Time since = is_asked_now ? knowledge_.now : asked.questioned.at;
-    weighed->candidate.within = later(since, kLongestQuestion) - knowledge_.now;
+    if (questions.awaited) await(*questions.awaited, *weighed);
   }
+}
+
+// Those that its requests go to are asked, too, also while it waits for something else: once it is known that they
+// do not answer, no time is lost by requests.
+void PlanningStep::ask_suspects() {
+  for (WeighedCandidate* weighed : best_first_) {
+    const auto& excluded = weighed->candidate.excluded;
+    const bool may_begin =
+        !excluded || excluded == Condition::kSuspect || excluded == Condition::kSettling;
+    if (!may_begin || weighed->only_revives || likely_.of(weighed->failure)) continue;
+    const std::vector<ComponentId> requested =
+        sends_requests_to(knowledge_.rules[weighed->candidate.strategy]);
+    const Questions questions = questions_to(requested, causes_[weighed->failure].rule, knowledge_);
+    std::vector<ComponentId>& asks = asks_[weighed->failure];
+    std::ranges::copy_if(questions.asks, std::back_inserter(asks),
+                         [&](ComponentId c) { return std::ranges::find(asks, c) == asks.end(); });
+    if (questions.awaited && !excluded) await(*questions.awaited, *weighed);
+  }
+}
+
+// It waits for the answer of the component to a question.
+void PlanningStep::await(ComponentId component, WeighedCandidate& weighed) const {
+  exclude(weighed, {Condition::kSuspect, component, {}});
+  weighed.candidate.remark = "asked whether it answers";
+  // One that never answered is not taken to hang.
+  const ComponentState& asked = knowledge_.components[component];
+  if (!asked.answers_probes) return;
+  const std::vector<ComponentId>& asks = asks_[weighed.failure];
+  const bool is_asked_now = std::ranges::find(asks, component) != asks.end();
+  const Time since = is_asked_now ? knowledge_.now : asked.questioned.at;
+  weighed.candidate.within = later(since, kLongestQuestion) - knowledge_.now;
 }
 
 // While one that did not answer explains a failure, it is asked again: it may only have been busy.

@@ -37,6 +37,8 @@ class PlanningStep {
   void select(Criticality level);
   void choose(const WeighedCandidate& weighed);
   void await_answers();
+  void ask_suspects();
+  void await(ComponentId component, WeighedCandidate& weighed) const;
   void ask_again();
   std::vector<WeighedCandidate*> chosen_together(const std::vector<WeighedCandidate*>& open) const;
   std::vector<WeighedCandidate*> weigh_together(const std::vector<WeighedCandidate*>& open,
