@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <unistd.h>
 
+#include "bag_doctor/bag_report.h"
 #include "bag_doctor/policy.h"
-#include "bag_doctor/report.h"
 #include "base/environment.h"
 #include "base/name_grammar.h"
 #include "base/text_file.h"
 #include "cli/finding_text.h"
 #include "cli/load_rules.h"
-#include "doctor/report.h"
+#include "doctor/doctor_report.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
 

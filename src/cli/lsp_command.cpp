@@ -5,10 +5,10 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
+#include "inbox/inbox.h"
 #include "live/robot_survey.h"
 #include "lsp/language_server.h"
 #include "lsp/message_stream.h"
-#include "robot/inbox.h"
 #include "rule_files/rule_files.h"
 
 namespace culprit::cli {

@@ -15,11 +15,11 @@
 
 #include "base/live_clock.h"
 #include "exemplars/sunset/node_process.h"
+#include "inbox/inbox.h"
 #include "journal/reader.h"
 #include "journal/standing_orders.h"
 #include "json/json.h"
 #include "link/survey.h"
-#include "robot/inbox.h"
 #include "ros2/options.h"
 #include "rtps/test_network.h"
 #include "terminal/test_program.h"

@@ -10,8 +10,8 @@
 #include "base/environment.h"
 #include "base/live_clock.h"
 #include "exemplars/sunset/node_process.h"
+#include "inbox/inbox.h"
 #include "owners/mark.h"
-#include "robot/inbox.h"
 #include "ros2/options.h"
 #include "terminal/test_program.h"
 

@@ -7,13 +7,13 @@
 #include <memory>
 #include <optional>
 
+#include "inbox/inbox.h"
 #include "link/link.h"
 #include "owners/component_containers.h"
 #include "owners/composed_nodes.h"
 #include "owners/container_clients.h"
 #include "owners/supervisor.h"
 #include "owners/units.h"
-#include "robot/inbox.h"
 #include "robot/robot.h"
 
 namespace culprit::live {

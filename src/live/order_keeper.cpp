@@ -1,8 +1,8 @@
 #include "live/order_keeper.h"
 
+#include "inbox/inbox.h"
 #include "journal/order_reserve.h"
 #include "journal/sealed_file.h"
-#include "robot/inbox.h"
 
 namespace culprit::live {
 

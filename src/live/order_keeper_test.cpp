@@ -14,10 +14,10 @@
 #include <gtest/gtest.h>
 
 #include "base/test_folder.h"
+#include "inbox/inbox.h"
 #include "journal/order_reserve.h"
 #include "language/checker.h"
 #include "live/run_journal.h"
-#include "robot/inbox.h"
 
 namespace culprit::live {
 namespace {

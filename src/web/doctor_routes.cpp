@@ -2,8 +2,8 @@
 
 #include "base/mutex.h"
 #include "base/units.h"
+#include "doctor/doctor_report.h"
 #include "doctor/look.h"
-#include "doctor/report.h"
 #include "ros2/options.h"
 #include "web/calls.h"
 

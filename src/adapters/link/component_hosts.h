@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/mutex.h"
+#include "inbox/inbox.h"
 #include "link/neighbour_hosts.h"
-#include "robot/inbox.h"
 
 namespace culprit::ros2 {
 

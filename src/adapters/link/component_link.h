@@ -17,13 +17,13 @@
 #include <string>
 
 #include "base/mutex.h"
+#include "inbox/inbox.h"
 #include "language/rule_set.h"
 #include "link/component_needs.h"
 #include "link/processor_time.h"
 #include "link/starvation.h"
 #include "link/type_finder.h"
 #include "robot/command.h"
-#include "robot/inbox.h"
 #include "ros2/executor.h"
 #include "ros2/graph.h"
 #include "ros2/messages.h"

@@ -21,7 +21,7 @@
 
 #include "base/mutex.h"
 #include "base/time.h"
-#include "robot/inbox.h"
+#include "inbox/inbox.h"
 #include "ros2/context.h"
 #include "ros2/executor.h"
 #include "ros2/graph.h"

@@ -15,10 +15,10 @@
 #include <unordered_map>
 
 #include "base/mutex.h"
+#include "inbox/inbox.h"
 #include "link/diagnostics_reading.h"
 #include "link/signal_publishers.h"
 #include "link/waiting_lookups.h"
-#include "robot/inbox.h"
 #include "ros2/subscription.h"
 
 namespace culprit::ros2 {

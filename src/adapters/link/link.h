@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "base/mutex.h"
+#include "inbox/inbox.h"
 #include "language/rule_set.h"
 #include "link/component_hosts.h"
 #include "link/component_link.h"
@@ -41,7 +42,6 @@
 #include "link/type_finder.h"
 #include "robot/command.h"
 #include "robot/component_binding.h"
-#include "robot/inbox.h"
 #include "ros2/hearing.h"
 #include "ros2/node.h"
 #include "ros2/timer.h"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "robot/inbox.h"
+#include "inbox/inbox.h"
 #include "ros2/executor.h"
 #include "ros2/graph.h"
 #include "ros2/service_client.h"

@@ -14,9 +14,9 @@
 #include "base/log_level.h"
 #include "base/mutex.h"
 #include "base/time.h"
+#include "inbox/inbox.h"
 #include "language/rule_set.h"
 #include "link/waiting_lines.h"
-#include "robot/inbox.h"
 #include "ros2/subscription.h"
 
 namespace culprit::ros2 {

@@ -11,8 +11,8 @@
 #include <optional>
 #include <string>
 
+#include "inbox/inbox.h"
 #include "robot/component_binding.h"
-#include "robot/inbox.h"
 #include "ros2/graph.h"
 #include "ros2/service_client.h"
 

@@ -14,11 +14,11 @@
 
 #include "base/expected.h"
 #include "base/mutex.h"
+#include "inbox/inbox.h"
 #include "language/rule_set.h"
 #include "link/other_nodes.h"
 #include "link/waiting_lookups.h"
 #include "robot/component_binding.h"
-#include "robot/inbox.h"
 #include "ros2/context.h"
 #include "ros2/messages.h"
 #include "ros2/subscription.h"

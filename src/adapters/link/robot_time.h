@@ -16,9 +16,9 @@
 #include <string>
 
 #include "base/expected.h"
+#include "inbox/inbox.h"
 #include "link/clock_step.h"
 #include "link/simulated_clock.h"
-#include "robot/inbox.h"
 #include "ros2/context.h"
 #include "ros2/timer.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "robot/inbox.h"
+#include "inbox/inbox.h"
 
 namespace culprit::ros2 {
 

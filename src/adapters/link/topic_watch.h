@@ -16,9 +16,9 @@
 
 #include "base/mutex.h"
 #include "base/time.h"
+#include "inbox/inbox.h"
 #include "language/rule_set.h"
 #include "link/topic_listener.h"
-#include "robot/inbox.h"
 #include "ros2/field_reader.h"
 #include "ros2/sample_gaps.h"
 

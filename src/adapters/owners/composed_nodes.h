@@ -37,10 +37,10 @@
 #include <vector>
 
 #include "base/mutex.h"
+#include "inbox/inbox.h"
 #include "language/rule_set.h"
 #include "owners/container_services.h"
 #include "owners/supervisor.h"
-#include "robot/inbox.h"
 
 namespace culprit::owners {
 

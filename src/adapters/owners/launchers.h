@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "base/time.h"
+#include "inbox/inbox.h"
 #include "language/rule_set.h"
 #include "owners/file_descriptor.h"
-#include "robot/inbox.h"
 
 namespace culprit::owners {
 

@@ -56,6 +56,7 @@
 
 #include "base/mutex.h"
 #include "base/wake_file.h"
+#include "inbox/inbox.h"
 #include "language/rule_set.h"
 #include "owners/component_programs.h"
 #include "owners/launchers.h"
@@ -64,7 +65,6 @@
 #include "owners/spawn.h"
 #include "owners/watched_process.h"
 #include "robot/command.h"
-#include "robot/inbox.h"
 
 namespace culprit::owners {
 

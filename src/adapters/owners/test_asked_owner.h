@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "base/live_clock.h"
+#include "inbox/inbox.h"
 #include "language/checker.h"
 #include "owners/units.h"
-#include "robot/inbox.h"
 
 namespace culprit::owners {
 

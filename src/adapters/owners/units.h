@@ -32,12 +32,12 @@
 #include <vector>
 
 #include "base/mutex.h"
+#include "inbox/inbox.h"
 #include "language/rule_set.h"
 #include "owners/engine.h"
 #include "owners/supervisor.h"
 #include "owners/systemd_bus.h"
 #include "robot/command.h"
-#include "robot/inbox.h"
 
 namespace culprit::owners {
 

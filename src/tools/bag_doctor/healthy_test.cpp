@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bag_doctor/report.h"
+#include "bag_doctor/bag_report.h"
 #include "bag_doctor/test_recording.h"
 #include "base/test_expected.h"
 #include "base/test_folder.h"

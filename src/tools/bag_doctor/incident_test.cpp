@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bag_doctor/report.h"
+#include "bag_doctor/bag_report.h"
 #include "bag_doctor/symptom.h"
 #include "bag_doctor/test_recording.h"
 #include "base/test_expected.h"

@@ -7,11 +7,11 @@
 
 #include "base/environment.h"
 #include "base/tool_names.h"
+#include "inbox/inbox.h"
 #include "init/movement.h"
 #include "init/values.h"
 #include "owners/found_owner.h"
 #include "owners/start_of.h"
-#include "robot/inbox.h"
 
 namespace culprit::init {
 namespace {

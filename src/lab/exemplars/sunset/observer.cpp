@@ -4,7 +4,7 @@
 
 #include "base/value.h"
 #include "exemplars/sunset/scene.h"
-#include "robot/inbox.h"
+#include "inbox/inbox.h"
 
 namespace culprit::sunset {
 

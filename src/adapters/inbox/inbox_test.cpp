@@ -1,4 +1,4 @@
-#include "robot/inbox.h"
+#include "inbox/inbox.h"
 
 #include <atomic>
 #include <thread>

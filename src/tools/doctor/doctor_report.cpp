@@ -1,4 +1,4 @@
-#include "doctor/report.h"
+#include "doctor/doctor_report.h"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
-#include "bag_doctor/report.h"
+#include "bag_doctor/bag_report.h"
 
 #include <algorithm>
 
 #include <fmt/core.h>
 
 #include "bag_doctor/examined.h"
-#include "doctor/report.h"
+#include "doctor/doctor_report.h"
 #include "doctor/wording.h"
 
 namespace culprit::bag_doctor {
