@@ -13,6 +13,21 @@ namespace culprit {
 using execute::Goal;
 using execute::Pursuit;
 
+namespace {
+
+// The adaptation that an undo of the component takes back; by then, the run may be past all of them. If the rules
+// were changed since, the strategy may adapt the component no more: then `reached`.
+std::size_t taken_back(ComponentId component, const std::vector<Adaptation>& all,
+                       std::size_t reached) {
+  const auto last = std::find_if(all.rbegin(), all.rend(), [&](const Adaptation& each) {
+    return each.component == component;
+  });
+  if (last == all.rend()) return std::min(reached, all.size() - 1);
+  return static_cast<std::size_t>(all.rend() - last) - 1;
+}
+
+}  // namespace
+
 StrategyExecutor::StrategyExecutor(const Knowledge& knowledge, Writes writes)
     : knowledge_(knowledge), write_(writes) {}
 
@@ -200,8 +215,12 @@ void StrategyExecutor::advance(Run& run, Time now, std::vector<Command>& command
 }
 
 Purpose StrategyExecutor::purpose_of(const Run& run) const {
-  Purpose purpose{run.strategy, static_cast<std::uint32_t>(run.adaptation), run.is_undoing};
   const Pursuit& pursuit = *run.pursuit;
+  const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
+  const std::size_t adaptation = run.is_undoing
+                                     ? taken_back(pursuit.component(), adaptations, run.adaptation)
+                                     : run.adaptation;
+  Purpose purpose{run.strategy, static_cast<std::uint32_t>(adaptation), run.is_undoing};
   const bool is_process = std::holds_alternative<execute::GoneGoal>(pursuit.goal()) ||
                           std::holds_alternative<execute::PresentGoal>(pursuit.goal());
   if (is_process) {

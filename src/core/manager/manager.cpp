@@ -140,6 +140,9 @@ void Manager::check(std::span<const Command> commands) const {
     CULPRIT_ASSERT(command.component.index < knowledge_.rules.components.size());
     CULPRIT_ASSERT(is_read(command) || !governor_.is_paused());
     CULPRIT_ASSERT(command.timeout > Duration::zero());
+    CULPRIT_ASSERT(command.purpose.strategy.index < knowledge_.rules.strategies.size());
+    CULPRIT_ASSERT(command.purpose.adaptation <
+                   knowledge_.rules[command.purpose.strategy].adaptations.size());
   }
 }
 

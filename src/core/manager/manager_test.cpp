@@ -454,6 +454,23 @@ TEST(Manager, UndoesAStrategyThatFailedBeforeTheNext) {
       << transcript(robot);
 }
 
+// The journal names the adaptation with each request, and reads it back after a crash.
+TEST(Manager, UndoesInTheNameOfAnAdaptationOfTheStrategy) {
+  TestRobot robot = dark_camera();
+  std::size_t undone = 0;
+  robot.before_commands = [&](std::vector<Observation>&, std::span<const Command> commands) {
+    for (const Command& command : commands) {
+      const auto& adaptations = robot.rules()[command.purpose.strategy].adaptations;
+      EXPECT_LT(command.purpose.adaptation, adaptations.size()) << to_string(command);
+      if (command.purpose.undoes) ++undone;
+    }
+    return true;
+  };
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(3s);
+  EXPECT_GE(undone, 1u) << transcript(robot);
+}
+
 // The filter is for the fusion that reads what it sends: both are as before, or neither.
 constexpr const char* kFiltered = R"(
 COMPONENT fusion NODE /fusion LAUNCH "fusion"
