@@ -336,10 +336,14 @@ Expected<int> Writer::forget(const std::string& rule, std::int64_t now) {
         "DELETE FROM coupling WHERE ?1 = '' OR cause = ?1 OR effect = ?1",
         "DELETE FROM latency WHERE ?1 = '' OR rule = ?1 OR instr(rule, ?1 || ' ') = 1",
         "DELETE FROM coincidence WHERE ?1 = '' OR rule = ?1 OR other = ?1"}) {
+    if (!done) break;
     auto statement = database_.prepare(sql);
-    if (!statement) return failure(path_, statement.error());
+    if (!statement) {
+      done = Error{statement.error()};
+      break;
+    }
     const auto deleted = statement->bind(1, std::string_view(rule)).step();
-    if (done && !deleted) done = Error{deleted.error()};
+    if (!deleted) done = Error{deleted.error()};
   }
   if (done) done = database_.run("COMMIT");
   if (done) {
@@ -373,7 +377,8 @@ Expected<void> Writer::drop_old(std::int64_t now) {
   wants_new_session_ = end >= *oldest && session_ == *oldest;
   if (session_ > 0) end = std::min(end, session_ - 1);
   if (end < *oldest) return {};
-  CULPRIT_ASSERT(end < newest_.id);  // the chain goes on from the newest row
+  CULPRIT_ASSERT(end < newest_.id);                 // the chain goes on from the newest row
+  CULPRIT_ASSERT(session_ == 0 || end < session_);  // no row can be read without its session's
   const std::string id = std::to_string(end);
   return database_.run(
       "DELETE FROM anchor; INSERT INTO anchor SELECT id, hash FROM entry WHERE id = " + id +

@@ -696,5 +696,18 @@ TEST(Writer, ForgetsOneRuleOrAll) {
   EXPECT_TRUE(verified(folder / "a.journal").findings.empty());
 }
 
+TEST(Writer, WritesOnAfterItCouldNotForget) {
+  const TestFolder folder;
+  Writer writer = open(folder / "a.journal");
+  Batch all;
+  all.learned.beliefs = {kBelief};
+  ASSERT_TRUE(append(writer, all));
+  run_sql(folder / "a.journal", "DROP TABLE coincidence; PRAGMA user_version = 2");
+  EXPECT_FALSE(writer.forget("", kWrittenAt));
+  EXPECT_EQ(value_of(writer.learned()).beliefs.size(), 1u) << "all or nothing";
+  const auto written = append(writer, batch(1));
+  EXPECT_TRUE(written) << written.error();
+}
+
 }  // namespace
 }  // namespace culprit::journal
