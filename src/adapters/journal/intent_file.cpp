@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/invariant.h"
 #include "journal/bytes.h"
 
 namespace culprit::journal {
@@ -120,6 +121,7 @@ void IntentFile::begin_after(Head head) {
 }
 
 Expected<void> IntentFile::append(Time step, std::string_view rows) {
+  CULPRIT_ASSERT(head_.size() == kIntentHead);
   bytes_.clear();
   if (end_ == 0) bytes_ = head_;
   const std::size_t part = bytes_.size();

@@ -39,6 +39,14 @@ std::vector<std::string> bodies(const SavedIntents& saved) {
   return all;
 }
 
+// No row would be known that the part follows: after a crash, nothing of it counted.
+TEST(IntentFileDeathTest, NothingIsWrittenBeforeItsBeginning) {
+  const TestFolder folder;
+  std::ofstream(folder / "a.journal") << "a journal";
+  IntentFile file = value_of(IntentFile::open(folder / "a.journal"));
+  EXPECT_DEATH((void)file.append(Time(), part_of({intent_row("one")})), "does not hold");
+}
+
 struct Intents : testing::Test {
   Intents() { std::ofstream(journal) << "a journal"; }
 

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/invariant.h"
 #include "journal/sealed_file.h"
 
 namespace culprit::journal {
@@ -71,6 +72,7 @@ class ReserveFile {
   }
 
   bool write(std::size_t which, std::string bytes) const {
+    CULPRIT_ASSERT(which < kRecords && bytes.size() < kRecord);
     bytes.resize(kRecord, '\0');
     std::size_t done = 0;
     while (done < bytes.size()) {

@@ -1,5 +1,7 @@
 #include "journal/settled_here.h"
 
+#include "base/invariant.h"
+
 namespace culprit::journal {
 namespace {
 
@@ -33,7 +35,9 @@ bool runs_here(ComponentId component, const Knowledge& knowledge) {
 }  // namespace
 
 bool is_settled_here(const Command& command, const Knowledge& knowledge) {
+  CULPRIT_ASSERT(!is_read(command));
   const Strategy& strategy = knowledge.rules[command.purpose.strategy];
+  CULPRIT_ASSERT(command.purpose.adaptation < strategy.adaptations.size());
   return can_be_read_back(strategy.adaptations[command.purpose.adaptation].type) &&
          runs_here(command.component, knowledge);
 }

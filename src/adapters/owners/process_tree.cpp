@@ -9,6 +9,7 @@
 #include <unistd.h>
 #include <utility>
 
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "owners/mark.h"
 #include "owners/proc.h"
@@ -16,6 +17,7 @@
 namespace culprit::owners {
 
 void send_signal(const FileDescriptor& process, int signal) {
+  CULPRIT_ASSERT(process);
   syscall(SYS_pidfd_send_signal, process.get(), signal, nullptr, 0);
 }
 
@@ -26,6 +28,8 @@ FileDescriptor hold(int pid, std::int64_t start_ticks) {
 }
 
 std::vector<FileDescriptor> signal_descendants(int pid, const std::string& variable, int signal) {
+  CULPRIT_ASSERT(pid > 1);            // all processes are below the first one
+  CULPRIT_ASSERT(!variable.empty());  // which shows the processes that are another's
   std::vector<FileDescriptor> tree;
   const std::vector<int> group = members_of_group(pid);
   for (const Relative& each : descendants_of(pid)) {
@@ -38,6 +42,7 @@ std::vector<FileDescriptor> signal_descendants(int pid, const std::string& varia
 }
 
 void kill_left(const std::string& mark, const std::string& variable, Duration patience) {
+  CULPRIT_ASSERT(!mark.empty());
   constexpr int kRounds = 5;
   const Time end = later(live_now(), patience);
   for (int round = 0; round < kRounds; ++round) {

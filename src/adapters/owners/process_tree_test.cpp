@@ -29,5 +29,10 @@ TEST(ProcessTree, HoldsTheProcessThatIsMeantAndNoOtherOfItsNumber) {
   while (is_alive(*pid)) usleep(1000);
 }
 
+// A descriptor that was never opened names no process.
+TEST(ProcessTreeDeathTest, SignalsAProcessThatIsHeldOnly) {
+  EXPECT_DEATH(send_signal(FileDescriptor(), SIGTERM), "'process' does not hold");
+}
+
 }  // namespace
 }  // namespace culprit::owners

@@ -348,6 +348,7 @@ Launch::~Launch() {
     (void)outcome();
     return;
   }
+  CULPRIT_ASSERT(pid_ > 1);  // -1 would be all processes
   kill(pid_, SIGKILL);
   // One that hangs in a file system exits when that lets it go: the supervisor cannot wait for it.
   waitpid(pid_, nullptr, WNOHANG);
@@ -355,6 +356,7 @@ Launch::~Launch() {
 
 Expected<void> Launch::outcome() {
   CULPRIT_ASSERT(report_.get() >= 0);
+  CULPRIT_ASSERT(pid_ > 1);  // waitpid() would wait for another's child
   const int pid = std::exchange(pid_, 0);
   Failure failure{};
   ssize_t size = 0;

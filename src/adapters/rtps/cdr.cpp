@@ -1,5 +1,7 @@
 #include "rtps/cdr.h"
 
+#include "base/invariant.h"
+
 namespace culprit::ros2 {
 
 // The two numberings of XCDR2 are those of RTPS 2.5 and of DDS-XTypes 1.3; each is even for big endian.
@@ -39,6 +41,7 @@ void CdrReader::enter_field() {
 bool CdrReader::align(std::size_t size) {
   constexpr std::size_t kMost2 = 4;
   if (is_xcdr2() && size > kMost2) size = kMost2;
+  CULPRIT_ASSERT(size > 0);
   const std::size_t aligned = (at_ + size - 1) / size * size;
   if (!ok_ || aligned > body_.size()) return false;
   at_ = aligned;
@@ -54,6 +57,7 @@ std::string_view CdrReader::read_string() {
 }
 
 std::uint32_t CdrReader::read_count(std::size_t smallest_element) {
+  CULPRIT_ASSERT(smallest_element > 0);
   const auto count = read<std::uint32_t>();
   if (left() / smallest_element >= count) return count;
   fail();

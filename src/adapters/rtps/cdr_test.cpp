@@ -155,6 +155,12 @@ TEST(Cdr, ReadsAnyNonZeroByteAsTrue) {
   EXPECT_TRUE(CdrReader(payload).read<bool>());
 }
 
+TEST(CdrDeathTest, EveryElementTakesBytes) {
+  const Bytes payload(100, 1);
+  CdrReader reader(payload);
+  EXPECT_DEATH(reader.read_count(0), "'smallest_element > 0' does not hold");
+}
+
 TEST(Cdr, SkipsWithoutOverflow) {
   const Bytes payload(100, 1);
   CdrReader reader(payload);

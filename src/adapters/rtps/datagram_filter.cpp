@@ -5,6 +5,7 @@
 #include <cstring>
 #include <optional>
 
+#include "base/invariant.h"
 #include "rtps/announcement.h"
 #include "rtps/submessage.h"
 
@@ -55,6 +56,7 @@ Extent extent_of(ByteView rest) {
 }
 
 void pad(std::span<std::uint8_t> place) {
+  CULPRIT_ASSERT(place.size() >= rtps::kSubmessageHeader);
   const std::size_t length = place.size() - rtps::kSubmessageHeader;
   place[0] = rtps::kPad;
   place[1] = 1;  // little endian
@@ -200,11 +202,14 @@ ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_poin
 // An INFO submessage says from whom, to whom and when the submessages after it are.
 void DatagramFilter::follow(std::span<std::uint8_t> submessage, ByteView body, Course& course) {
   if (submessage[0] == rtps::kInfoSource) {
+    CULPRIT_ASSERT(body.size() >= 8 + course.source.bytes.size());
     std::copy_n(body.data() + 8, course.source.bytes.size(), course.source.bytes.begin());
     course.sent.reset();
   }
-  if (submessage[0] == rtps::kInfoDestination)
+  if (submessage[0] == rtps::kInfoDestination) {
+    CULPRIT_ASSERT(body.size() >= course.destination.bytes.size());
     std::copy_n(body.data(), course.destination.bytes.size(), course.destination.bytes.begin());
+  }
   if (submessage[0] == rtps::kInfoTime)
     course.sent = Submessage(submessage, body, course.source).read_time();
 }
@@ -262,6 +267,7 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
   }
   if (end <= rtps::kHeader && datagram.size() > rtps::kHeader) return {};
   if (has_unwanted && !has_wanted) return {};
+  CULPRIT_ASSERT(end <= datagram.size());
   return datagram.first(end);
 }
 
@@ -286,6 +292,7 @@ DatagramFilter::Announcement DatagramFilter::take(std::span<std::uint8_t> submes
   Submessage body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
   if (!tell_of_announcement(body)) return Announcement::kOfMiddleware;
   const Submessage::Sample sample = body.read_sample();
+  CULPRIT_ASSERT(body.ok());  // a gap with another number would hide what was never received
   const bool is_little = body.order() == Endianness::kLittle;
   const auto write = [](std::span<std::uint8_t> to, std::int64_t sequence, bool little) {
     const auto bits = static_cast<std::uint64_t>(sequence);
@@ -353,9 +360,9 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& c
   const bool is_of_writer = is_sample || kind == rtps::kHeartbeat || kind == rtps::kGap ||
                             kind == rtps::kHeartbeatFragment;
   if (!is_of_writer) return true;
-  // It passed all checks: it is long enough.
-  const std::span<std::uint8_t, 4> to{
-      submessage.data() + rtps::kSubmessageHeader + (is_sample ? 4 : 0), 4};
+  const std::size_t reader = rtps::kSubmessageHeader + (is_sample ? 4 : 0);
+  CULPRIT_ASSERT(submessage.size() >= reader + 8);  // it passed all checks
+  const std::span<std::uint8_t, 4> to{submessage.data() + reader, 4};
   const bool is_addressed = std::ranges::any_of(to, [](std::uint8_t byte) { return byte != 0; });
   if (is_addressed && kind != rtps::kData) return true;
   Guid writer;
@@ -390,9 +397,9 @@ bool DatagramFilter::hand_over(Readers::Reader& reader, std::span<const std::uin
     return false;
   if (course.destination != GuidPrefix{} && course.destination != reader.guid.prefix())
     return false;
-  // It passed all checks: its lengths fit.
   Submessage body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
   const Submessage::Sample sample = body.read_sample();
+  CULPRIT_ASSERT(body.ok());                        // it passed all checks: its lengths fit
   if (sample.sequence <= reader.last) return true;  // best effort readers pass over what is older
   reader.last = sample.sequence;
   handed_.push_back({reader.on_whole,
@@ -595,10 +602,19 @@ std::size_t& DatagramFilter::total(const Guid& writer) {
   return is_reliable(writer) ? reserved_reliable_ : reserved_best_effort_;
 }
 
+// Below zero, the limits would be those of no memory.
+void DatagramFilter::give_back(const Guid& writer, std::size_t bytes) {
+  std::size_t& all = total(writer);
+  CULPRIT_ASSERT(bytes <= all);
+  all -= bytes;
+}
+
 void DatagramFilter::release(const Guid& guid, Writer& writer,
                              std::map<std::int64_t, Assembly>::iterator which) {
-  total(guid) -= kept_for(which->second);
-  writer.reserved -= kept_for(which->second);
+  const std::size_t kept = kept_for(which->second);
+  CULPRIT_ASSERT(kept <= writer.reserved);
+  give_back(guid, kept);
+  writer.reserved -= kept;
   writer.assemblies.erase(which);
 }
 
@@ -620,7 +636,7 @@ void DatagramFilter::delivered(const Guid& writer) {
 void DatagramFilter::drop(const Guid& guid) {
   const auto known = writers_.find(guid);
   if (known == writers_.end()) return;
-  total(guid) -= known->second.reserved;
+  give_back(guid, known->second.reserved);
   writers_.erase(known);
 }
 
@@ -663,7 +679,7 @@ void DatagramFilter::forget(const GuidPrefix& participant) {
   const MutexLock lock(mutex_);
   std::erase_if(writers_, [&](const auto& each) CULPRIT_REQUIRES(mutex_) {
     if (each.first.prefix() != participant) return false;
-    total(each.first) -= each.second.reserved;
+    give_back(each.first, each.second.reserved);
     return true;
   });
   std::erase_if(readers_, [&](const auto& each) { return each.first.prefix() == participant; });

@@ -231,6 +231,7 @@ class DatagramFilter {
   void release(const Guid& guid, Writer& writer, std::map<std::int64_t, Assembly>::iterator which)
       CULPRIT_REQUIRES(mutex_);
   std::size_t& total(const Guid& writer) CULPRIT_REQUIRES(mutex_);
+  void give_back(const Guid& writer, std::size_t bytes) CULPRIT_REQUIRES(mutex_);
 
   mutable Mutex mutex_;
   std::unordered_map<Guid, Writer> writers_ CULPRIT_GUARDED_BY(mutex_);  // with a reader here

@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include <utility>
 
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "rtps/claims.h"
 #include "rtps/process_sockets.h"
@@ -318,6 +319,7 @@ std::uint64_t Origins::dropped() const {
 
 std::vector<ForeignSource> Origins::new_sources() {
   const MutexLock lock(mutex_);
+  CULPRIT_ASSERT(told_ <= sources_.size());
   const std::vector<ForeignSource> all(sources_.begin() + static_cast<std::ptrdiff_t>(told_),
                                        sources_.end());
   told_ = sources_.size();

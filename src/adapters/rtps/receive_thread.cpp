@@ -11,6 +11,8 @@
 #include <unistd.h>
 #include <utility>
 
+#include "base/invariant.h"
+
 namespace culprit::ros2 {
 namespace {
 
@@ -158,6 +160,7 @@ class ReceiveThread::Batch {
   };
 
   std::span<std::uint8_t> bytes(std::size_t i) {
+    CULPRIT_ASSERT(i < count_ && messages_[i].msg_len <= kLargest);
     return {bytes_.get() + i * kLargest, messages_[i].msg_len};
   }
   UdpAddress sender(std::size_t i) const {
@@ -272,6 +275,7 @@ void ReceiveThread::begin_hurry() {
 
 void ReceiveThread::end_hurry() {
   const MutexLock lock(mutex_);
+  CULPRIT_ASSERT(hurried_ > 0);
   --hurried_;
 }
 
@@ -362,6 +366,7 @@ void ReceiveThread::take_urgent(Socket& socket, Batch& batch, const Sockets& pat
   for (std::size_t i = 0; i < kBatch && !socket.kept.empty(); ++i) {
     Socket::Kept first = std::move(socket.kept.front());
     socket.kept.pop_front();
+    CULPRIT_ASSERT(Socket::bytes_of(first) <= socket.kept_bytes);
     socket.kept_bytes -= Socket::bytes_of(first);
     socket.hand_on({first.bytes, first.from, first.received}, first.dropped);
   }

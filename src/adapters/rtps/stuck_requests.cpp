@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "base/invariant.h"
 #include "rtps/for_each_submessage.h"
 
 namespace culprit::ros2 {
@@ -55,6 +56,7 @@ std::optional<Missing> missing_in(ByteView request, const GuidPrefix& destinatio
 
 // With the number 0 and without a bitmap; padding takes its place.
 void ask_for_all(std::span<std::uint8_t> request, std::size_t bitmap) {
+  CULPRIT_ASSERT(bitmap >= rtps::kSubmessageHeader && request.size() == kBitmap + bitmap + 4);
   const bool is_little = (request[1] & 1) != 0;
   const auto write_length = [&](std::size_t header, std::size_t length) {
     request[header + (is_little ? 2 : 3)] = static_cast<std::uint8_t>(length);

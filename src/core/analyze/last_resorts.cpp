@@ -5,6 +5,7 @@
 
 #include "analyze/backoff.h"
 #include "analyze/detector.h"
+#include "base/invariant.h"
 #include "knowledge/ambiguity.h"
 
 namespace culprit {
@@ -116,12 +117,14 @@ bool LastResorts::has_to_give_way(RuleId id, Time now) const {
 }
 
 void LastResorts::give_way(RuleId id, Time now) {
+  CULPRIT_ASSERT(knowledge_.states[id].last_resort);
   const Attempt attempt = *knowledge_.states[id].last_resort;
   abandon(id, now);
   refuse(write_.states.state(id).search, attempt, now);
 }
 
 void LastResorts::abandon(RuleId id, Time now) {
+  CULPRIT_ASSERT(knowledge_.states[id].last_resort);
   const Attempt attempt = *std::exchange(write_.states.state(id).last_resort, std::nullopt);
   write_.couplings.ended(attempt, now);
 }

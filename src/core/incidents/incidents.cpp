@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "base/invariant.h"
 #include "knowledge/describe.h"
 
 namespace culprit {
@@ -456,6 +457,7 @@ void Incidents::advance(const Knowledge& knowledge, const Orders& orders, EventL
     }
   }
   const ById are = by_id(all);
+  CULPRIT_ASSERT(are.size() == all.size());  // an id names one incident
   for (const Incident& before : open_) {
     if (!are.contains(before.id)) close(before, all, knowledge.now, events);
   }
