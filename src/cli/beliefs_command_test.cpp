@@ -1,5 +1,4 @@
 // culprit beliefs as a user runs it.
-#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 
 #include "base/test_folder.h"
 #include "cli/commands.h"
+#include "cli/test_command.h"
 #include "journal/writer.h"
 
 namespace culprit::cli {
@@ -24,15 +24,9 @@ struct BeliefsCommand : testing::Test {
   std::string shown(std::vector<std::string> options = {}) const {
     std::vector<std::string> words = {"beliefs", "show", "--journal", path.string()};
     words.insert(words.end(), options.begin(), options.end());
-    CLI::App app;
-    int exit_code = -1;
-    add_beliefs(app, exit_code);
-    std::reverse(words.begin(), words.end());
-    testing::internal::CaptureStdout();
-    app.parse(std::move(words));
-    std::string printed = testing::internal::GetCapturedStdout();
-    EXPECT_EQ(exit_code, kOk) << printed;
-    return printed;
+    const CommandEnd end = end_of_command(add_beliefs, std::move(words));
+    EXPECT_EQ(end.exit_code, kOk) << end.out;
+    return end.out;
   }
 
   const test::TestFolder own;

@@ -11,6 +11,7 @@
 
 #include "base/test_folder.h"
 #include "cli/commands.h"
+#include "cli/test_command.h"
 
 namespace culprit::cli {
 namespace {
@@ -32,17 +33,11 @@ struct Fmt : testing::Test {
 
   // Gives the exit code; what was printed is in `out` and `err`.
   int fmt(std::vector<std::string> arguments) {
-    CLI::App app;
-    int exit_code = -1;
-    add_fmt(app, exit_code);
     arguments.insert(arguments.begin(), "fmt");
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    app.parse(arguments);
-    out = testing::internal::GetCapturedStdout();
-    err = testing::internal::GetCapturedStderr();
-    return exit_code;
+    CommandEnd end = end_of_command(add_fmt, std::move(arguments));
+    out = std::move(end.out);
+    err = std::move(end.err);
+    return end.exit_code;
   }
 
   const test::TestFolder own;

@@ -1,5 +1,4 @@
 // culprit graph RULES: what a rule file says of its robot.
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -8,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/commands.h"
+#include "cli/test_command.h"
 #include "json/json.h"
 
 namespace culprit::cli {
@@ -35,17 +35,11 @@ RULE Tilted
 struct GraphOfRules : testing::Test {
   // Gives the exit code; what was printed is in `out` and `err`.
   int graph(std::vector<std::string> arguments) {
-    CLI::App app;
-    int exit_code = -1;
-    add_graph(app, exit_code);
     arguments.insert(arguments.begin(), "graph");
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    app.parse(arguments);
-    out = testing::internal::GetCapturedStdout();
-    err = testing::internal::GetCapturedStderr();
-    return exit_code;
+    CommandEnd end = end_of_command(add_graph, std::move(arguments));
+    out = std::move(end.out);
+    err = std::move(end.err);
+    return end.exit_code;
   }
   std::string file(const std::string& name, const std::string& text) {
     const std::string path = testing::TempDir() + "graph_command_test_" + name + ".rules";

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/commands.h"
+#include "cli/test_command.h"
 #include "json/json.h"
 
 namespace culprit::cli {
@@ -26,17 +27,11 @@ constexpr const char* kAllTopics =
 struct Plan : testing::Test {
   // Gives the exit code; what was printed is in `out` and `err`.
   int plan(std::vector<std::string> arguments) {
-    CLI::App app;
-    int exit_code = -1;
-    add_plan(app, exit_code);
     arguments.insert(arguments.begin(), "plan");
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    app.parse(arguments);
-    out = testing::internal::GetCapturedStdout();
-    err = testing::internal::GetCapturedStderr();
-    return exit_code;
+    CommandEnd end = end_of_command(add_plan, std::move(arguments));
+    out = std::move(end.out);
+    err = std::move(end.err);
+    return end.exit_code;
   }
   int plan_for(const std::string& state, const std::string& rules = kSunset,
                const std::string& format = "text") {

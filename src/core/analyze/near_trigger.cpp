@@ -8,20 +8,6 @@
 namespace culprit {
 namespace {
 
-bool is_comparison(Op op) {
-  switch (op) {
-    case Op::kLessInt:
-    case Op::kLessDouble:
-    case Op::kLessEqualInt:
-    case Op::kLessEqualDouble:
-    case Op::kEqualInt:
-    case Op::kEqualDouble:
-      return true;
-    default:
-      return false;
-  }
-}
-
 bool compares_whole_numbers(Op op) {
   return op == Op::kLessInt || op == Op::kLessEqualInt || op == Op::kEqualInt;
 }
@@ -61,7 +47,7 @@ std::optional<NearTrigger> comparison(RuleId rule, std::size_t at, const Knowled
   const Operand left = operand(code, at);
   if (left.end >= code.size()) return std::nullopt;
   const Operand right = operand(code, left.end);
-  if (right.end >= code.size() || !is_comparison(code[right.end].op)) return std::nullopt;
+  if (right.end >= code.size() || !compares_numbers(code[right.end].op)) return std::nullopt;
   const bool input_first = left.push.op == Op::kInput && right.push.op == Op::kConstant;
   const bool input_last = left.push.op == Op::kConstant && right.push.op == Op::kInput;
   if (!input_first && !input_last) return std::nullopt;

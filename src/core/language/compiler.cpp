@@ -26,20 +26,6 @@ void count(const Typed& e, std::size_t& nodes, std::size_t& constants) {
   for (const Typed& child : e.children) count(child, nodes, constants);
 }
 
-bool is_comparison(Op op) {
-  switch (op) {
-    case Op::kLessInt:
-    case Op::kLessDouble:
-    case Op::kLessEqualInt:
-    case Op::kLessEqualDouble:
-    case Op::kEqualInt:
-    case Op::kEqualDouble:
-      return true;
-    default:
-      return false;
-  }
-}
-
 bool is_plain_input(const Typed& e) {
   return e.op == Op::kInput || (e.op == Op::kIntToDouble && e.children[0].op == Op::kInput);
 }
@@ -81,7 +67,7 @@ bool reads_inputs(const Typed& expression) {
 
 std::vector<double> thresholds_of(const Typed& comparison) {
   if (comparison.op == Op::kNot) return thresholds_of(comparison.children[0]);
-  if (!is_comparison(comparison.op)) return {};
+  if (!compares_numbers(comparison.op)) return {};
   for (const std::size_t side : {0u, 1u}) {
     const Typed& there = comparison.children[1 - side];
     if (is_plain_input(comparison.children[side]) && !reads_inputs(there))
@@ -92,7 +78,7 @@ std::vector<double> thresholds_of(const Typed& comparison) {
 
 void collect_thresholds(const Typed& trigger, std::vector<Input>& inputs) {
   if (trigger.op == Op::kInput) inputs[trigger.input.index].only_compared = false;
-  if (is_comparison(trigger.op)) {
+  if (compares_numbers(trigger.op)) {
     for (const int side : {0, 1}) {
       const Typed& here = trigger.children[static_cast<std::size_t>(side)];
       const Typed& there = trigger.children[static_cast<std::size_t>(1 - side)];

@@ -32,6 +32,20 @@ Slot Slot::of(std::string_view value) {
   return slot;
 }
 
+bool compares_numbers(Op op) {
+  switch (op) {
+    case Op::kLessInt:
+    case Op::kLessDouble:
+    case Op::kLessEqualInt:
+    case Op::kLessEqualDouble:
+    case Op::kEqualInt:
+    case Op::kEqualDouble:
+      return true;
+    default:
+      return false;
+  }
+}
+
 Slot Constant::view() const {
   Slot out = slot;
   out.s = text;

@@ -141,6 +141,9 @@ constexpr int operand_count(Op op) {
   return 0;
 }
 
+// Whether its operands are numbers or durations, and its result says how they are ordered.
+bool compares_numbers(Op op);
+
 struct Instruction {
   Op op = Op::kConstant;
   std::uint32_t operand = 0;  // of kConstant and kInput
