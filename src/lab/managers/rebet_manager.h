@@ -1,5 +1,8 @@
 // ReBeT on SUAVE, as in its repository's trees suave_offline.xml and suave_online.xml and the
-// decorators in rebet_suave (EGAlberts/ReBeT, 2024).
+// decorators in rebet_suave (EGAlberts/ReBeT, 2024). Alberts et al. (ACSOS 2024) describe the decorators
+// in section III-C2: the internal plan in evaluate_condition(), asked while the child runs
+// (AdaptOnConditionRunning), and external strategies with a utility. Check: both yield more than no
+// adaptation, as their Table I has it (SuaveRebet, suave_study/campaign_test.cpp).
 //
 //   rebet          AdaptSpiralAltitudeOffline: every 10 s the altitude by the latest visibility, with
 //                  SUAVE's thresholds

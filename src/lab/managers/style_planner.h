@@ -5,8 +5,8 @@
 // it was taken from, and with what of it can be checked (style_planner_test.cpp).
 //
 //   rebet       Alberts et al., ReBeT, its reactive adaptation logic, from its public code
-//               (EGAlberts/ReBeT, rebet/include/rebet/adapt_node.h): decorators of a behaviour tree,
-//               one around each action. Each adapts by itself when its own condition holds, and goes
+//               (EGAlberts/ReBeT, rebet/include/rebet/adapt_node.h) and section III-C2 of their article
+//               (ACSOS 2024): decorators of a behaviour tree, one around each action. Each adapts by itself when its own condition holds, and goes
 //               through its options in their order. Its bandits: bandit_manager.h.
 //   ac-ros      Cheng et al., AC-ROS, from the paper's related work, and from another's public robot
 //               after AC-ROS (solzilberman/adaptobot, SAS.py): the utility functions of all goals are
