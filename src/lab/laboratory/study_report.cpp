@@ -25,9 +25,20 @@ fs::path script(const std::string& name) {
   return (own_folder() / "../share/culprit/studies" / name).lexically_normal();
 }
 
-// Runs a script to its end. Errors: it cannot be started, or it failed: then the last line that it
-// printed.
-Expected<void> run(std::vector<std::string> arguments, const fs::path& log) {
+Expected<void> write_files(const std::vector<ReportFile>& files, const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return Error{folder.string() + ": " + error.message()};
+  for (const ReportFile& file : files) {
+    if (auto written = write_text((folder / file.name).string(), file.text); !written)
+      return written;
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<void> run_python(std::vector<std::string> arguments, const fs::path& log) {
   std::error_code ignored;
   fs::remove(log, ignored);
   const auto pid = owners::spawn({std::move(arguments), {}, log});
@@ -43,19 +54,6 @@ Expected<void> run(std::vector<std::string> arguments, const fs::path& log) {
   const std::size_t before = printed->rfind('\n', end);
   return Error{printed->substr(before == std::string::npos ? 0 : before + 1, end - before)};
 }
-
-Expected<void> write_files(const std::vector<ReportFile>& files, const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) return Error{folder.string() + ": " + error.message()};
-  for (const ReportFile& file : files) {
-    if (auto written = write_text((folder / file.name).string(), file.text); !written)
-      return written;
-  }
-  return {};
-}
-
-}  // namespace
 
 void ReportOptions::add_to(CLI::App& command) {
   command
@@ -75,7 +73,7 @@ Expected<std::string> find_report_python() {
   if (!folder) return Error{folder.error()};
   std::string missing = std::string("python3 ") + kPackages;
   for (const char* python : kPythons) {
-    const auto checked = run({python, kNoBytecode, script("report.py")}, *folder / "log");
+    const auto checked = run_python({python, kNoBytecode, script("report.py")}, *folder / "log");
     if (checked) return std::string(python);
     if (checked.error().starts_with("python3-")) missing = checked.error();
   }
@@ -103,13 +101,13 @@ Expected<void> make_report(const std::string& study, const std::vector<ReportFil
   }
   const std::vector<std::string> command = {*python, kNoBytecode, script(study + ".py"), data};
   if (!options.folder.empty()) {
-    if (auto made = run(command, *temporary / "log"); !made) return made;
+    if (auto made = run_python(command, *temporary / "log"); !made) return made;
   }
   if (options.html.empty() && options.plot_folder.empty()) return {};
   std::vector<std::string> parts = command;
   if (!options.html.empty()) parts.insert(parts.end(), {"--html", options.html});
   if (!options.plot_folder.empty()) parts.insert(parts.end(), {"--svg", options.plot_folder});
-  return run(parts, *temporary / "log");
+  return run_python(parts, *temporary / "log");
 }
 
 Expected<std::string> latex(const std::vector<study::Table>& tables) {
@@ -120,7 +118,7 @@ Expected<std::string> latex(const std::vector<study::Table>& tables) {
   if (auto written = write_text(input.string(), study::tables_json(tables)); !written)
     return Error{written.error()};
   const auto made =
-      run({"python3", kNoBytecode, script("latex.py"), input, output}, *folder / "log");
+      run_python({"python3", kNoBytecode, script("latex.py"), input, output}, *folder / "log");
   if (!made) return Error{"LaTeX needs Python (sudo apt install python3): " + made.error()};
   return read_text(output.string());
 }

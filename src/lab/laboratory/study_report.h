@@ -2,6 +2,7 @@
 // program writes (docs/study-files.md).
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,10 @@ Expected<void> make_report(const std::string& study, const std::vector<ReportFil
 
 // Tables as LaTeX. Errors: as above, but no library is needed.
 Expected<std::string> latex(const std::vector<study::Table>& tables);
+
+// Runs a script, {"python3", its path, ...}, to its end; what it prints is in `log`. Errors: it cannot
+// be started, or it failed: then the last line that it printed.
+Expected<void> run_python(std::vector<std::string> arguments, const std::filesystem::path& log);
 
 // The first Python, of PATH or Debian's, that has the libraries of reports. Errors: none has.
 Expected<std::string> find_report_python();

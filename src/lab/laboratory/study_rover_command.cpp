@@ -32,7 +32,8 @@ struct RoverOptions {
   bool is_json = false;
   std::uint64_t seed = 1;
   double patience_s = 60;
-  std::string output;
+  std::string output;  // of the plays; empty: none
+  std::string tables;  // a file; empty: the standard output
 };
 
 // The figures of a row, of the plays in which something mends each fault.
@@ -131,8 +132,8 @@ int print(const RoverOptions& options, const RoverCampaign& campaign,
     tables.push_back(std::move(compared));
   const auto text = tables_as(tables, options.format);
   if (!text) return fail(text.error(), kUsage);
-  say(stdout, "{}\n{}", *text, left);
-  return kOk;
+  const auto written = write_text(options.tables, fmt::format("{}\n{}", *text, left));
+  return written ? kOk : fail(written.error(), kFailed);
 }
 
 int study_rover(const RoverOptions& options) {
@@ -197,6 +198,8 @@ void add_study_rover(CLI::App& study, int& exit_code) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the world")->capture_default_str();
   command->add_option("-o,--output", options->output, "Write the plays there, as JSON")
+      ->type_name("FILE");
+  command->add_option("--tables", options->tables, "Write the tables there (default: the terminal)")
       ->type_name("FILE");
   command->callback([options, &exit_code] { exit_code = study_rover(*options); });
 }
