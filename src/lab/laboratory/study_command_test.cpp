@@ -252,6 +252,28 @@ TEST_F(StudyCommand, HasTheStatisticsThatSciPyComputes) {
   EXPECT_NE(std::system((check + " 2>/dev/null").c_str()), 0);
 }
 
+TEST_F(StudyCommand, HasTheVerdictsThatSciPyComputes) {
+  ASSERT_EQ(run_small({"--planner", "paper", "--planner", "reference", "--report", path("data")}),
+            kOk)
+      << complaint;
+  ASSERT_EQ(run({"suave", "--claims", "--runs", "20", "--format", "csv", "-o", path("suave.csv")}),
+            kOk)
+      << complaint;
+  const auto python = find_report_python();
+  ASSERT_TRUE(python) << python.error();
+  const auto check = [&](const std::string& file) {
+    return std::system((*python + " -B studies/check_claims.py '" + file + "'").c_str());
+  };
+  EXPECT_EQ(check(path("data/claims.csv")), 0);
+  EXPECT_EQ(check(path("suave.csv")), 0);
+  std::string claims = text(path("suave.csv"));
+  const std::size_t verdict = claims.rfind(",open\n");
+  ASSERT_NE(verdict, std::string::npos);
+  claims.replace(verdict, 6, ",holds\n");
+  write(path("suave.csv"), claims);
+  EXPECT_NE(check(path("suave.csv")), 0);
+}
+
 TEST_F(StudyCommand, KeepsItsTablesIfThereIsNoReport) {
   EXPECT_EQ(run_small({"--html", path("no/report.html")}), kFailed);
   EXPECT_THAT(complaint, HasSubstr("no/report.html: No such file or directory"));

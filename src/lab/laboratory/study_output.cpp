@@ -57,8 +57,9 @@ void StudyOutput::add_to(CLI::App& command) {
 }
 
 void StudyOutput::add_suave_to(CLI::App& command) {
-  add_to(command, "text (tables, ours beside the paper's), markdown, latex or json",
-         {"text", "markdown", "latex", "json"});
+  add_to(command,
+         "text (tables, ours beside the paper's), markdown, latex, json or, with --claims, csv",
+         {"text", "markdown", "latex", "json", "csv"});
 }
 
 Expected<void> write(const study::Findings& findings, const StudyOutput& output) {
@@ -69,6 +70,7 @@ Expected<void> write(const study::Findings& findings, const StudyOutput& output)
                       {"metrics.csv", study::metrics_csv(findings.campaign)},
                       {"effects.csv", study::effects_csv(findings.campaign)},
                       {"values.csv", study::values_csv(findings.campaign)},
+                      {"claims.csv", study::claims_csv(findings)},
                       {"tables.json", study::tables_json(study::tables(findings))},
                       {"timelines.json", study::timelines_json(findings.timelines)}},
                      output.report);

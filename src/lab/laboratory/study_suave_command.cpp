@@ -12,6 +12,7 @@
 #include "laboratory/commands.h"
 #include "laboratory/study_output.h"
 #include "laboratory/study_runs.h"
+#include "study/csv.h"
 #include "suave_study/claims.h"
 #include "suave_study/fit.h"
 #include "suave_study/settings_json.h"
@@ -213,8 +214,13 @@ int judge_claims(const study::SuaveCampaign& campaign, const SuaveOptions& optio
     if (!result) return kFailed;
     results.push_back(std::move(*result));
   }
-  const auto written = write(
-      std::vector{study::suave_claims_table(results.front(), results.back())}, options.output);
+  const auto written =
+      options.output.format == "csv"
+          ? write_text(
+                options.output.output,
+                study::claims_csv("", "", study::suave_claims(results.front(), results.back())))
+          : write(std::vector{study::suave_claims_table(results.front(), results.back())},
+                  options.output);
   return written ? kOk : fail(written.error(), kFailed);
 }
 

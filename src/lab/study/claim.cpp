@@ -76,32 +76,58 @@ ClaimPart is_more(const Group& larger, const Group& smaller) {
   const Gap difference = gap(larger.values, smaller.values);
   return {fmt::format("{} > {}, g {}", named(larger), named(smaller),
                       number(hedges_g(smaller.values, larger.values))),
-          difference.p_above(0), difference.p_below(0)};
+          difference.p_above(0),
+          difference.p_below(0),
+          Comparison::kMore,
+          larger,
+          smaller};
 }
 
 ClaimPart is_alike(const Group& ours, const Group& other, double margin) {
   const Gap difference = gap(ours.values, other.values);
   return {fmt::format("{} = {} ± {}, g {}", named(ours), named(other), number(margin),
                       number(hedges_g(other.values, ours.values))),
-          difference.p_within(margin), difference.p_beyond(margin)};
+          difference.p_within(margin),
+          difference.p_beyond(margin),
+          Comparison::kAlike,
+          ours,
+          other,
+          0,
+          margin};
 }
 
 ClaimPart is_above(const Group& group, double bound) {
   const Gap difference = gap(group.values, bound);
-  return {fmt::format("{} > {:g}", named(group), bound), difference.p_above(0),
-          difference.p_below(0)};
+  return {fmt::format("{} > {:g}", named(group), bound),
+          difference.p_above(0),
+          difference.p_below(0),
+          Comparison::kAbove,
+          group,
+          {},
+          bound};
 }
 
 ClaimPart is_below(const Group& group, double bound) {
   const Gap difference = gap(group.values, bound);
-  return {fmt::format("{} < {:g}", named(group), bound), difference.p_below(0),
-          difference.p_above(0)};
+  return {fmt::format("{} < {:g}", named(group), bound),
+          difference.p_below(0),
+          difference.p_above(0),
+          Comparison::kBelow,
+          group,
+          {},
+          bound};
 }
 
 ClaimPart is_near(const Group& group, double bound, double margin) {
   const Gap difference = gap(group.values, bound);
   return {fmt::format("{} = {} ± {:g}", named(group), number(bound), margin),
-          difference.p_within(margin), difference.p_beyond(margin)};
+          difference.p_within(margin),
+          difference.p_beyond(margin),
+          Comparison::kNear,
+          group,
+          {},
+          bound,
+          margin};
 }
 
 const ClaimPart& Claim::decisive() const {
@@ -115,6 +141,18 @@ const ClaimPart& Claim::decisive() const {
 std::size_t Claim::supported() const {
   return static_cast<std::size_t>(std::count_if(
       parts.begin(), parts.end(), [](const ClaimPart& part) { return part.p < kClaimAlpha; }));
+}
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kHolds:
+      return "holds";
+    case Verdict::kContradicted:
+      return "contradicted";
+    case Verdict::kOpen:
+      break;
+  }
+  return "open";
 }
 
 void judge(std::vector<Claim>& claims) {

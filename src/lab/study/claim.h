@@ -12,7 +12,9 @@
 // significant in either direction is open: the absence of a difference is never taken as equality.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "study/statistics/moments.h"
@@ -25,10 +27,24 @@ struct Group {
   Moments values;
 };
 
+enum class Comparison : std::uint8_t {
+  kMore,
+  kAlike,
+  kAbove,
+  kBelow,
+  kNear
+};  // as the functions below
+
 struct ClaimPart {
   std::string shown;  // "DC– 1.21 > DCS 0.96, g 0.66"
   double p = 1;
   double p_against = 1;
+  // For others who compute it again.
+  Comparison comparison = Comparison::kMore;
+  Group first{};
+  Group second{};     // empty if there is one sample: then its mean is compared with `bound`
+  double bound = 0;   // of one sample
+  double margin = 0;  // of kAlike and kNear
 };
 
 // The mean of `larger` is above that of `smaller` (Welch). g is Hedges' effect size.
@@ -44,6 +60,7 @@ ClaimPart is_near(const Group& group, double bound, double margin);
 double hedges_g(const Moments& a, const Moments& b);
 
 enum class Verdict : std::uint8_t { kHolds, kOpen, kContradicted };
+std::string_view to_string(Verdict verdict);  // "holds", "open", "contradicted"
 
 struct Claim {
   std::string text;

@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "study/paper_claims.h"
+
 namespace culprit::study {
 namespace {
 
@@ -96,6 +98,53 @@ void metric_line(std::string& out, const Row& row, Metric metric,
   }
 }
 
+constexpr std::string_view kClaimFields =
+    "planner,profile,claim,test,comparison,first,first_mean,first_sd,first_count,second,second_"
+    "mean,"
+    "second_sd,second_count,bound,margin,part_p,part_p_against,p,p_against,verdict\n";
+
+std::string_view name(Comparison comparison) {
+  switch (comparison) {
+    case Comparison::kMore:
+      return "more";
+    case Comparison::kAlike:
+      return "alike";
+    case Comparison::kAbove:
+      return "above";
+    case Comparison::kBelow:
+      return "below";
+    case Comparison::kNear:
+      break;
+  }
+  return "near";
+}
+
+void add(const Group& group, Line& line) {
+  const bool exists = group.values.count() > 0;
+  line.text(group.name)
+      .number_if(exists, group.values.mean())
+      .number_if(group.values.count() > 1, group.values.sample_sd())
+      .number_if(exists, static_cast<double>(group.values.count()));
+}
+
+void add_claims(std::string_view planner, std::string_view profile,
+                const std::vector<Claim>& claims, std::string& out) {
+  for (const Claim& claim : claims) {
+    for (const ClaimPart& part : claim.parts) {
+      Line line(out);
+      line.text(planner)
+          .text(profile)
+          .text(claim.text)
+          .text(claim.test)
+          .text(name(part.comparison));
+      add(part.first, line);
+      add(part.second, line);
+      line.number(part.bound).number(part.margin).number(part.p).number(part.p_against);
+      line.number(claim.p).number(claim.p_against).text(to_string(claim.verdict));
+    }
+  }
+}
+
 }  // namespace
 
 std::string metrics_csv(const CampaignResult& result) {
@@ -156,6 +205,20 @@ std::string values_csv(const CampaignResult& result) {
       }
     }
   }
+  return out;
+}
+
+std::string claims_csv(const Findings& findings) {
+  std::string out(kClaimFields);
+  for (const Ablation& ablation : ablations(findings.campaign))
+    add_claims(ablation.planner, ablation.profile, paper_claims(findings, ablation), out);
+  return out;
+}
+
+std::string claims_csv(std::string_view planner, std::string_view profile,
+                       const std::vector<Claim>& claims) {
+  std::string out(kClaimFields);
+  add_claims(planner, profile, claims, out);
   return out;
 }
 

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "study/claim.h"
 #include "study/comparison.h"
 #include "study/findings.h"
 
@@ -23,5 +26,13 @@ std::string effects_csv(const CampaignResult& result);
 // relative error where more than Distribution::kMostValues different ones occur). Lower bounds are
 // left out: dependencies,criticality,impact,planner,profile,probabilities,metric,value,count
 std::string values_csv(const CampaignResult& result);
+
+// A line for each part of each claim, with what was compared, so that others can test it again
+// (studies/check_claims.py): planner,profile,claim,test,comparison,first,first_mean,first_sd,first_count,
+// second,second_mean,second_sd,second_count,bound,margin,part_p,part_p_against,p,p_against,verdict
+// (comparison: more, alike, above, below, near; of one sample the second is empty)
+std::string claims_csv(const Findings& findings);
+std::string claims_csv(std::string_view planner, std::string_view profile,
+                       const std::vector<Claim>& claims);
 
 }  // namespace culprit::study

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "study/paper_claims.h"
 #include "study/test_findings.h"
 
 namespace culprit::study {
@@ -59,6 +60,18 @@ TEST(StudyCsv, QuotesWhatWouldBreakALine) {
   CampaignFold fold(campaign);
   fold.add({});
   EXPECT_NE(metrics_csv(fold.result()).find("true,\"a,\"\"b\"\"\nc\",paper"), std::string::npos);
+}
+
+TEST(StudyCsv, HasALineForEachPartOfEachClaim) {
+  const Findings findings = synthetic_findings(20);
+  const auto table = lines(claims_csv(findings));
+  std::size_t parts = 0;
+  for (const Claim& claim : paper_claims(findings, ablations(findings.campaign).front()))
+    parts += claim.parts.size();
+  ASSERT_EQ(table.size(), 1 + parts);
+  EXPECT_TRUE(table[1].starts_with("paper,paper,means of resolved / executed,TOST,alike,–––,"))
+      << table[1];
+  for (const std::string& line : table) EXPECT_GE(std::count(line.begin(), line.end(), ','), 19);
 }
 
 }  // namespace
