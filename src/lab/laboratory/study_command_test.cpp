@@ -307,12 +307,12 @@ constexpr std::array<std::pair<const char*, const char*>, 10> kDone = {{
     {"suave", "suave --runs 30"},
     {"suave-extended", "suave --extended --runs 30"},
     {"suave-stress", "suave --stress --runs 30"},
-    {"rca", "rca --components 20 --faults 3 --episodes 40 --planner naive,paper,bayes"},
+    {"rca", "rca --components 20 --faults 3 --episodes 40 --planner naive,paper,bayes --seed 2026"},
     {"rca-slow-monitors",
      "rca --components 20 --ignore --episodes 30 --detector-latency 0..3s --not-stated "
-     "--planner bayes,patient,informed"},
-    {"rca-learning", "rca --components 5 --faults 1 --learn 500"},
-    {"rca-regret", "rca --regret --systems 30"},
+     "--planner bayes,patient,informed --seed 2026"},
+    {"rca-learning", "rca --components 5 --faults 1 --learn 500 --seed 2026"},
+    {"rca-regret", "rca --regret --systems 30 --seed 2026"},
     {"rover", "rover"},
     {"fleet", "fleet --models 4 --robots 3"},
 }};

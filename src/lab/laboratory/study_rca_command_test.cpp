@@ -115,6 +115,18 @@ TEST(StudyRcaExport, HidesCasesOfEachKindOfRobot) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(StudyRcaExport, HasASmallSetOfFiveMegabytesAtMost) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "culprit-study-rca-small";
+  std::filesystem::remove_all(folder);
+  EXPECT_EQ(export_to(folder, {"--hidden-seed", "98765432123"}), kOk);
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    bytes += entry.is_regular_file() ? entry.file_size() : 0;
+  EXPECT_GT(bytes, 100'000U);
+  EXPECT_LE(bytes, 5'000'000U);
+  std::filesystem::remove_all(folder);
+}
+
 TEST_F(StudyRcaCommand, RefusesOptionsThatAnExportDoesNotUse) {
   EXPECT_THAT(run({"--export-cases", "nowhere"}), HasSubstr("--export-cases"));
   EXPECT_THAT(run({"--hidden-seed", "4"}), HasSubstr("--hidden-seed requires --export-cases"));
