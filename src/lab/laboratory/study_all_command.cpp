@@ -74,11 +74,11 @@ constexpr std::array kSteps = {
          "--planner bayes,patient,informed --seed 2026",
          "rca --components 20 --ignore --episodes 30 --detector-latency 0..3s --not-stated "
          "--planner bayes,patient,informed --seed 2026",
-         20, 2},
+         3, 1},
     Step{"rca-false-alarms",
          "rca --components 20 --ignore --episodes 100 --false-alarms 2 --faults-before 30 "
          "--planner bayes,patient --seed 2026",
-         "", 120, 0},
+         "", 20, 0},
     Step{"rca-learning", "rca --components 5 --faults 1 --learn 500 --seed 2026",
          "rca --components 5 --faults 1 --learn 500 --seed 2026", 5, 5},
     Step{"rca-regret", "rca --regret --systems 400 --seed 2026",
