@@ -170,16 +170,12 @@ std::map<std::string, std::string> owner_troubles(const RuleSet& rules) {
   return out;
 }
 
-// Measures the comparisons of the file in the latest recorded run.
+// Measures the comparisons of the file in all recorded runs.
 Expected<std::vector<drill::ThresholdMeasure>> thresholds_of(const std::filesystem::path& file,
                                                              const std::string& text,
                                                              const std::vector<Trial>& trials) {
   const auto reader = journal::Reader::open(file);
   if (!reader) return Error{reader.error()};
-  auto recording = replay::Recording::open(*reader);
-  if (!recording) return Error{recording.error()};
-  const auto row = reader->entry(recording->session_row());
-  if (!row || !*row) return Error{row ? "the journal has no run" : row.error()};
   std::vector<Diagnostic> mistakes;
   const auto comparisons = drill::comparisons_in(parse(Source("rules", text), mistakes));
   std::vector<drill::FaultyStretch> faulty;
@@ -189,7 +185,7 @@ Expected<std::vector<drill::ThresholdMeasure>> thresholds_of(const std::filesyst
                       trial.well && !trial.restored ? *trial.well : trial.end,
                       {fired.begin(), fired.end()}});
   }
-  return drill::measure(*recording, static_cast<double>((*row)->at) / 1e9, comparisons, faulty);
+  return drill::measure_all(*reader, comparisons, faulty);
 }
 
 // How long each component took from its start until it was up, by the journal.

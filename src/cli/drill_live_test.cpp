@@ -169,6 +169,26 @@ TEST_F(Drill, ThatOnlyWatchesProposesThresholds) {
   EXPECT_THAT(managers(), testing::IsEmpty());
 }
 
+TEST_F(Drill, ThatIsResumedMeasuresAllItsRuns) {
+  std::ofstream(rules, std::ios::app) << "RULE CameraSilent\n  POLICIES WARNING REPORT\n"
+                                         "  TRIGGER age(/managed_subsystem/rgb_camera) > 900ms\n";
+  TestProgram camera(world, {"sunset-node", "camera"});
+  TestProgram depth(world, {"sunset-node", "depth"});
+  std::vector<int> values;
+  for (int run = 1; run <= 2; ++run) {
+    TestProgram program(
+        world, {"culprit", "drill", rules, "--monitor", "4", "--json", "--state-dir", state(),
+                "--record", (world.folder() / "record").string()});
+    EXPECT_EQ(program.wait(90s), 0) << program.output();
+    const std::string key = "\"values\":";
+    const std::string output = program.output();
+    const std::size_t at = output.find(key);
+    ASSERT_NE(at, std::string::npos) << output;
+    values.push_back(std::atoi(output.c_str() + at + key.size()));
+  }
+  EXPECT_GT(values[1], values[0] + 20) << "pictures come at 10 Hz";
+}
+
 TEST_F(Drill, ThatOnlyWatchesLeavesNoCulpritOnARobotThatIsIll) {
   TestProgram program(world, {"culprit", "drill", rules, "--monitor", "4", "--patience", "5",
                               "--state-dir", state()});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -274,6 +275,54 @@ Expected<std::vector<ThresholdMeasure>> measure(replay::Recording& recording, do
     measures[i].looked = looked;
   }
   return measures;
+}
+
+void add(ThresholdMeasure& sum, const ThresholdMeasure& more) {
+  if (sum.values == 0) {
+    sum.least = more.least;
+    sum.most = more.most;
+  } else if (more.values > 0) {
+    sum.least = std::min(sum.least, more.least);
+    sum.most = std::max(sum.most, more.most);
+  }
+  sum.values += more.values;
+  sum.longest_beyond = std::max(sum.longest_beyond, more.longest_beyond);
+  sum.looked += more.looked;
+  if (!more.faulty) return;
+  const bool is_milder =
+      !sum.faulty || (sum.of.is_above ? *more.faulty < *sum.faulty : *more.faulty > *sum.faulty);
+  if (is_milder) sum.faulty = more.faulty;
+}
+
+Expected<std::vector<ThresholdMeasure>> measure_all(const journal::Reader& journal,
+                                                    const std::vector<Comparison>& comparisons,
+                                                    const std::vector<FaultyStretch>& faulty) {
+  std::optional<std::vector<ThresholdMeasure>> sum;
+  std::int64_t before = 0;
+  for (double until = std::numeric_limits<double>::infinity();;) {
+    const auto row = journal.newest(journal::kind::kSession, before);
+    if (!row) return Error{row.error()};
+    if (!*row) break;
+    const double at_start = static_cast<double>((*row)->at) / 1e9;
+    auto recording = replay::Recording::open(journal, (*row)->id);
+    if (!recording && sum) break;  // a later one is measured
+    if (!recording) return Error{recording.error()};
+    std::vector<FaultyStretch> meanwhile;
+    std::ranges::copy_if(faulty, std::back_inserter(meanwhile), [&](const FaultyStretch& each) {
+      return each.from >= at_start && each.from < until;
+    });
+    const auto measured = measure(*recording, at_start, comparisons, meanwhile);
+    if (!measured) return Error{measured.error()};
+    if (!sum) {
+      sum = *measured;
+    } else {
+      for (std::size_t i = 0; i < sum->size(); ++i) add((*sum)[i], (*measured)[i]);
+    }
+    until = at_start;
+    before = (*row)->id;
+  }
+  if (!sum) return Error{"the journal has no run"};
+  return std::move(*sum);
 }
 
 }  // namespace culprit::drill

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "journal/reader.h"
 #include "language/syntax.h"
 #include "replay/recording.h"
 
@@ -48,8 +49,8 @@ struct ThresholdMeasure {
   double most_an_hour() const;
 };
 
-// Stretches of time, in seconds since 1970: [from, until).
-using Stretches = std::vector<std::pair<double, double>>;
+// The measures of two runs of the same rules, as if they were one run.
+void add(ThresholdMeasure& sum, const ThresholdMeasure& more);
 
 // `at_start`: seconds since 1970 when the recorded run began. `faulty`: when a fault was injected, until well; `tripped`
 // says which rules fired in it. Errors: the journal cannot be read.
@@ -61,5 +62,9 @@ struct FaultyStretch {
 Expected<std::vector<ThresholdMeasure>> measure(replay::Recording& recording, double at_start,
                                                 const std::vector<Comparison>& comparisons,
                                                 const std::vector<FaultyStretch>& faulty);
+// The measures of all runs in a journal of one rule file: a drill that was resumed has several. Errors: it has none, or cannot be read.
+Expected<std::vector<ThresholdMeasure>> measure_all(const journal::Reader& journal,
+                                                    const std::vector<Comparison>& comparisons,
+                                                    const std::vector<FaultyStretch>& faulty);
 
 }  // namespace culprit::drill

@@ -171,6 +171,26 @@ TEST(DrillResults, AFailureAfterTheFaultWasTakenBackIsNoneOfIt) {
   EXPECT_EQ(to_json(*trial_from(to_json(trial))), to_json(trial));
 }
 
+TEST(DrillThresholds, OfTwoRunsAreThoseOfOne) {
+  const Comparison above;
+  ThresholdMeasure sum{.of = above};
+  add(sum, {.of = above, .values = 20, .least = 0.1, .most = 0.2, .faulty = 0.9, .looked = 10});
+  add(sum, {.of = above});  // a run without values
+  add(sum, {.of = above,
+            .values = 30,
+            .least = 0.05,
+            .most = 0.15,
+            .longest_beyond = 1,
+            .faulty = 0.6,
+            .looked = 15});
+  EXPECT_EQ(sum.values, 50u);
+  EXPECT_EQ(sum.least, 0.05);
+  EXPECT_EQ(sum.most, 0.2);
+  EXPECT_EQ(sum.longest_beyond, 1);
+  EXPECT_EQ(sum.faulty, 0.6) << "the mildest";
+  EXPECT_EQ(sum.looked, 25);
+}
+
 TEST(DrillResults, IntervalsHoldTheirShare) {
   EXPECT_EQ(interval_of(0, 0).high, 1);
   const Interval all = interval_of(20, 20);
