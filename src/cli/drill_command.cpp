@@ -326,12 +326,25 @@ Expected<void> inject_all(const DrillOptions& options, const RuleSet& rules,
                           const drill::DrillPlan& plan, DrillSession& session,
                           drill::DrillRecord& record) {
   std::FILE* const remarks = remarks_of(options);
+  const Time begin = live_now();
   Duration left = plan.estimate;
   std::size_t number = 0;
   for (const drill::Step& step : plan.steps) {
     ++number;
     left -= drill::estimate(step, rules, options.plan);
     if (record.has(step.id())) continue;
+    if (const auto limit = drill::limit_reached(step, record.trials(), rules); !limit.empty()) {
+      say(remarks, "[{}/{}] {} is left out: {}\n", number, plan.steps.size(),
+          escape_controls(drill::to_string(step.faults)), limit);
+      continue;
+    }
+    // The plan fits by its estimate; repairs may take longer.
+    if (options.plan.budget &&
+        live_now() - begin + drill::estimate(step, rules, options.plan) > *options.plan.budget) {
+      say(remarks, "culprit: the budget is used up after {} of {}; --record resumes the drill\n",
+          number - 1, plan.steps.size());
+      return {};
+    }
     const auto trial = session.run(step);
     if (!trial) return Error{trial.error()};
     if (auto added = record.add(*trial); !added) return Error{added.error()};

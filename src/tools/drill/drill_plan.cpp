@@ -1,6 +1,7 @@
 #include "drill/drill_plan.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <random>
 
@@ -35,16 +36,33 @@ std::string why_spared(ComponentId id, const RuleSet& rules, const PlanOptions& 
   return spared == options.spared.end() ? "" : spared->second;
 }
 
-bool is_wanted(FaultKind kind, const std::string& component, const RuleSet& rules,
-               const PlanOptions& options) {
-  const auto excludes = [&](const DrillLine& line) {
+bool is_excluded(FaultKind kind, const std::string& component, const RuleSet& rules) {
+  return std::ranges::any_of(rules.drills, [&](const DrillLine& line) {
     return line.what == DrillLine::What::kWithout && line.subject == word_of(kind) &&
            rules[line.component].name == component;
-  };
+  });
+}
+
+bool is_wanted(FaultKind kind, const std::string& component, const RuleSet& rules,
+               const PlanOptions& options) {
   const bool is_chosen = options.kinds.empty()
                              ? kind != FaultKind::kLoss
                              : std::ranges::find(options.kinds, kind) != options.kinds.end();
-  return is_chosen && std::ranges::none_of(rules.drills, excludes);
+  return is_chosen && !is_excluded(kind, component, rules);
+}
+
+// Two components that the rules let be killed.
+std::vector<std::vector<Fault>> pairs_of(std::vector<std::string> breakable, const RuleSet& rules) {
+  std::erase_if(breakable, [&](const std::string& component) {
+    return is_excluded(FaultKind::kKill, component, rules);
+  });
+  std::vector<std::vector<Fault>> pairs;
+  for (std::size_t a = 0; a < breakable.size(); ++a) {
+    for (std::size_t b = a + 1; b < breakable.size(); ++b)
+      pairs.push_back(
+          {Fault{FaultKind::kKill, breakable[a]}, Fault{FaultKind::kKill, breakable[b]}});
+  }
+  return pairs;
 }
 
 // std::shuffle differs between standard libraries.
@@ -131,11 +149,8 @@ Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options) {
       singles.push_back({Fault{FaultKind::kSetParameter, name, line.subject, line.value}});
   }
   if (options.pairs) {
-    for (std::size_t a = 0; a < breakable.size(); ++a) {
-      for (std::size_t b = a + 1; b < breakable.size(); ++b)
-        singles.push_back(
-            {Fault{FaultKind::kKill, breakable[a]}, Fault{FaultKind::kKill, breakable[b]}});
-    }
+    auto pairs = pairs_of(breakable, rules);
+    std::ranges::move(pairs, std::back_inserter(singles));
   }
   std::map<std::string, std::int64_t> broken;  // how often
   const auto is_at_limit = [&](const Fault& fault) {
@@ -158,6 +173,21 @@ Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options) {
     }
   }
   return out;
+}
+
+std::string limit_reached(const Step& step, const std::vector<Trial>& trials,
+                          const RuleSet& rules) {
+  for (const Fault& fault : step.faults) {
+    const auto breaks = [&](const Trial& trial) {
+      return trial.injected > 0 && std::ranges::any_of(trial.faults, [&](const Fault& each) {
+               return each.component == fault.component;
+             });
+    };
+    const std::int64_t limit = limit_of(fault.component, rules);
+    if (std::ranges::count_if(trials, breaks) >= limit)
+      return fmt::format("DRILL {} limit {}", fault.component, limit);
+  }
+  return "";
 }
 
 std::vector<std::string> plan_lines(const DrillPlan& plan, const PlanOptions& options) {

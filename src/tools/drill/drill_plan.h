@@ -12,6 +12,7 @@
 
 #include "base/expected.h"
 #include "drill/fault.h"
+#include "drill/trial.h"
 #include "language/rule_set.h"
 
 namespace culprit::drill {
@@ -46,6 +47,10 @@ Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options);
 
 // How long one step takes: health before, the reaction, health after.
 Duration estimate(const Step& step, const RuleSet& rules, const PlanOptions& options);
+
+// "DRILL arm limit 3" if that many faults of a component of the step were injected already, in trials that prove nothing, too.
+// Empty: the step may be done.
+std::string limit_reached(const Step& step, const std::vector<Trial>& trials, const RuleSet& rules);
 
 // For people: one line a fault, then the estimate.
 std::vector<std::string> plan_lines(const DrillPlan& plan, const PlanOptions& options);

@@ -74,6 +74,37 @@ TEST(DrillPlan, PairsAreKilledAtOnce) {
   EXPECT_THAT(ids_of(*made), testing::Contains("kill camera + kill fusion #1"));
 }
 
+TEST(DrillPlan, APairKillsNoComponentThatTheRulesKeepFromIt) {
+  const RuleSet rules = *check(Source("r", R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+COMPONENT motor NODE /motor LAUNCH "motor"
+DRILL motor without kill
+)"))
+                             .rules;
+  const auto made = plan(rules, {.kinds = {FaultKind::kHang}, .pairs = true});
+  ASSERT_TRUE(made);
+  EXPECT_THAT(ids_of(*made), UnorderedElementsAre("hang camera #1", "hang fusion #1",
+                                                  "hang motor #1", "kill camera + kill fusion #1"));
+}
+
+TEST(DrillPlan, ALimitCountsFaultsThatProvedNothing) {
+  const RuleSet rules = *check(Source("r", R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+DRILL camera limit 2
+)"))
+                             .rules;
+  const Step step{{Fault{FaultKind::kHang, "camera"}}, 2};
+  Trial aborted{{Fault{FaultKind::kKill, "camera"}}, 1, 100};
+  aborted.trouble = "ABORT speed > 0.5 is true";
+  Trial refused = aborted;
+  refused.injected = 0;  // nothing was done to the component
+  EXPECT_EQ(limit_reached(step, {aborted, refused, refused}, rules), "");
+  EXPECT_EQ(limit_reached(step, {aborted, refused, aborted}, rules), "DRILL camera limit 2");
+  EXPECT_EQ(limit_reached({{Fault{FaultKind::kKill, "fusion"}}, 1}, {aborted, aborted}, rules), "");
+}
+
 TEST(DrillPlan, DrillLinesAddExcludeAndLimit) {
   const RuleSet rules = *check(Source("r", R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
