@@ -128,6 +128,36 @@ TEST_F(Drill, ThatIsKilledLeavesNoProcessStoppedAndTheNextOneCanBegin) {
   EXPECT_FALSE(has_record_of_injected());
 }
 
+TEST_F(Drill, ThatIsKilledWhileItsCulpritStartsLeavesNoneThatTheNextOneDoesNotKnow) {
+  TestProgram killed(world, drill({"--only", "camera", "--kinds", "kill"}));
+  const auto within = [](Duration time, const auto& holds) {
+    for (const Time end = live_now() + time; !holds() && live_now() < end;)
+      std::this_thread::sleep_for(2ms);
+    return holds();
+  };
+  ASSERT_TRUE(within(20s, [] { return !managers().empty(); })) << killed.output();
+  const int starting = managers().front();
+  kill(starting, SIGSTOP);  // it does not answer yet
+  EXPECT_TRUE(within(10s, [&] { return has_record_of_injected(); })) << killed.output();
+  killed.signal(SIGKILL);
+  killed.wait();
+  kill(starting, SIGCONT);
+  std::filesystem::remove_all(world.folder() / "record");
+  TestProgram next(world, drill({"--only", "camera", "--kinds", "kill"}));
+  EXPECT_EQ(next.wait(120s), 0) << next.output();
+  EXPECT_FALSE(has_record_of_injected());
+}
+
+TEST_F(Drill, EndsWhenItsBudgetIsUsedUpThoughMoreFaultsWerePlanned) {
+  TestProgram program(world, drill({"--only", "depth", "--kinds", "deactivate", "--hang", "0.5",
+                                    "--times", "9", "--budget", "11"}));
+  EXPECT_EQ(program.wait(90s), 0) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("7 more do not fit into the budget"));
+  EXPECT_THAT(program.output(), HasSubstr("[1/2] deactivate depth: not noticed"));
+  EXPECT_THAT(program.output(), HasSubstr("the budget is used up after 1 of 2"));
+  EXPECT_THAT(program.output(), testing::Not(HasSubstr("[2/2]")));
+}
+
 TEST_F(Drill, AnAbortConditionThatIsTrueOrUnknownKeepsItFromInjecting) {
   std::ofstream(rules, std::ios::app) << "SIGNAL speed TOPIC /odom FIELD twist.twist.linear.x\n";
   for (const auto& [condition, why] :

@@ -45,7 +45,7 @@ void end_manager(const drill::ProcessId& process) {
 
 Expected<std::unique_ptr<DrillManager>> DrillManager::start(
     const std::vector<std::string>& arguments, const std::filesystem::path& log,
-    const std::atomic<bool>& stop) {
+    const std::atomic<bool>& stop, const Note& note) {
   owners::Program program;
   program.arguments = {(own_folder() / "culprit").string()};
   program.arguments.insert(program.arguments.end(), arguments.begin(), arguments.end());
@@ -53,6 +53,10 @@ Expected<std::unique_ptr<DrillManager>> DrillManager::start(
   const auto pid = owners::spawn(program);
   if (!pid) return Error{pid.error()};
   const drill::ProcessId process{*pid, owners::start_ticks_of(*pid).value_or(0)};
+  if (auto noted = note(process); !noted) {
+    end_manager(process);
+    return Error{noted.error()};
+  }
   std::string why = "it does not answer";
   for (const Time end = live_now() + 20s; live_now() < end && !stop && runs(process);) {
     WhichCulprit which;

@@ -69,10 +69,18 @@ Expected<std::unique_ptr<DrillSession>> DrillSession::begin(Options options, Say
     return Error{here->answering.front().name() +
                  " manages a robot on this domain; end it first: a drill starts its own"};
   auto manager =
-      DrillManager::start(session->options_.manager, session->options_.log, session->stop_);
-  if (!manager) return Error{manager.error()};
+      DrillManager::start(session->options_.manager, session->options_.log, session->stop_,
+                          [&](const drill::ProcessId& process) -> Expected<void> {
+                            session->healer_ = process;
+                            if (auto noted = session->note({}); !noted)
+                              return Error{"nothing is injected: " + noted.error()};
+                            return {};
+                          });
+  if (!manager) {
+    if (session->left_.empty()) (void)drill::forget_injected(session->options_.injected);
+    return Error{manager.error()};
+  }
   session->manager_ = std::move(*manager);
-  if (auto noted = session->note({}); !noted) return Error{"nothing is injected: " + noted.error()};
   if (auto well = session->wait_until_well(Until::kWellOrTold); !well) return Error{well.error()};
   if (auto undone = session->undo_what_is_left_now(); !undone) return Error{undone.error()};
   session->healthy_ = session->manager_->view();
@@ -119,8 +127,7 @@ Expected<void> DrillSession::undo_what_is_left_now() {
 
 Expected<void> DrillSession::note(std::vector<Injected> injected) const {
   injected.insert(injected.end(), left_.begin(), left_.end());
-  return drill::write_injected(options_.injected,
-                               {boot_id(), manager_->process(), std::move(injected)});
+  return drill::write_injected(options_.injected, {boot_id(), healer_, std::move(injected)});
 }
 
 DrillSession::~DrillSession() {
@@ -140,14 +147,19 @@ bool DrillSession::heal() {
     static const std::atomic<bool> kNeverStopped = false;
     say_("the culprit of this drill exited or hangs; another one heals the robot");
     manager_.reset();
-    auto next = DrillManager::start(options_.manager, options_.log, kNeverStopped);
+    // On a full disk the next drill finds it by its socket, and says so.
+    auto next = DrillManager::start(options_.manager, options_.log, kNeverStopped,
+                                    [&](const drill::ProcessId& process) {
+                                      healer_ = process;
+                                      (void)note({});
+                                      return Expected<void>();
+                                    });
     if (!next) {
       say_(next.error() + "; restore the healthy robot");
       return false;
     }
     manager_ = std::move(*next);
     calm_.reset();
-    (void)note({});  // on a full disk the next drill finds it by its socket, and says so
   }
   if (auto well = wait_until_well(Until::kWell); !well) {
     say_(well.error() + "; culprit goes on and heals it: process " +

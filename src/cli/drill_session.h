@@ -96,6 +96,7 @@ class DrillSession {
       lock_;  // two drills of one robot would undo the faults of each other
   std::unique_ptr<DrillNode> node_;
   std::unique_ptr<DrillManager> manager_;
+  drill::ProcessId healer_;  // the process of manager_, from its start on
   std::unique_ptr<DrillInjector> injector_;
   std::optional<drill::RobotView> healthy_;
   drill::HealthyRobot usual_;
