@@ -58,7 +58,7 @@ Expected<std::unique_ptr<DrillManager>> DrillManager::start(
     return Error{noted.error()};
   }
   std::string why = "it does not answer";
-  for (const Time end = live_now() + 20s; live_now() < end && !stop && runs(process);) {
+  for (const Time end = live_now() + 60s; live_now() < end && !stop && runs(process);) {
     WhichCulprit which;
     auto here = culprits_here(which);
     if (!here) return Error{here.error()};
