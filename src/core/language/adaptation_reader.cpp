@@ -207,6 +207,12 @@ class AdaptationReader {
     if (source_.text(next.span) == "[")
       return read_.fail(Code::kSyntax, next.span, "a list stands in quotes",
                         "write it as in set_parameter gains \"[1, 2]\" 5");
+    if (const std::string& first = adaptation.subject.text;
+        first.starts_with('{') && first.ends_with(':'))
+      return read_.fail(
+          Code::kSyntax, {adaptation.subject.span.begin, s.rest().end},
+          "no braces stand around a parameter and its value",
+          "write for example set_parameter " + first.substr(1, first.size() - 2) + " 15 5");
     if (adaptation.subject.text.size() > 1 && adaptation.subject.text.ends_with(':')) {
       const Span colon{adaptation.subject.span.end - 1, adaptation.subject.span.end};
       return read_.fail(Code::kExtraText, colon, "unexpected ':' after a parameter",

@@ -14,7 +14,9 @@
 #include "language/likely_slips.h"
 #include "language/parser.h"
 #include "language/place_index.h"
+#include "language/request_text.h"
 #include "language/rule_checks.h"
+#include "language/start_checks.h"
 #include "language/typing.h"
 
 namespace culprit {
@@ -319,14 +321,20 @@ class Checker {
       check_short_impacts(*rule.written, rules_, diagnostics_);
     }
     // Declared components come first, in the order of the file.
-    for (std::size_t i = 0; i < file_.components.size(); ++i)
+    for (std::size_t i = 0; i < file_.components.size(); ++i) {
       check_shell(file_.components[i], rules_.components[i], diagnostics_);
+      check_command(file_.components[i], rules_.components[i], diagnostics_);
+    }
+    check_containers(file_, rules_, diagnostics_);
+    check_topics_as_nodes(file_, diagnostics_);
     check_topics_as_components(file_, rules_, diagnostics_);
+    check_nodes_as_topics(file_, rules_, diagnostics_);
     check_unused(file_, rules_, diagnostics_);
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);
     check_interlocks(conditions_, rules_, diagnostics_);
     check_file_conditions(file_conditions_, rules_, diagnostics_);
+    check_interlocked_rules(conditions_, file_conditions_, rules_, diagnostics_);
     check_effects(conditions_, rules_, diagnostics_);
     check_settings_in_rules(file_, diagnostics_);
   }
@@ -485,7 +493,7 @@ class Checker {
     adaptation.type = written.type;
     adaptation.subject = written.subject.text;
     adaptation.topic = written.topic.text;
-    if (written.request) adaptation.request = written.request->text;
+    if (written.request) add_request(*written.request, adaptation);
     if (syntax::names_parameter(written.type))
       adaptation.parameter = symbols_.parameter(adaptation.component, adaptation.subject);
     adaptation.impact = impact_of(written);
@@ -496,6 +504,12 @@ class Checker {
     }
     strategy.components.push_back(adaptation.component);
     strategy.adaptations.push_back(std::move(adaptation));
+  }
+
+  void add_request(const syntax::Name& written, Adaptation& adaptation) {
+    adaptation.request = written.text;
+    if (auto flaw = flaw_of_request(written.text))
+      report(Code::kBadRequest, written.span, std::move(flaw->cause), std::move(flaw->remedy));
   }
 
   // Zero: it was reported.
@@ -541,7 +555,26 @@ class Checker {
              "write the number that the node expects, for example its seconds");
     } else if (fits_stack(typed, *written.value)) {
       adaptation.value = compile(typed);
+      check_value(written, typed, adaptation.parameter);
     }
+  }
+
+  // Warnings about a value that the node would refuse.
+  void check_value(const syntax::Adaptation& written, const Typed& typed, ParameterId parameter) {
+    const bool is_list = typed.op == Op::kConstant && typed.type == Type::kString &&
+                         typed.constant->text.starts_with('[');
+    const auto read = symbols_.type_of(parameter);
+    const bool fits =
+        !read || *read == typed.type || is_list || (is_numeric(*read) && is_numeric(typed.type));
+    if (!fits)
+      diagnostics_.push_back({Code::kTypeMismatch, Severity::kWarning, written.value->span,
+                              "the rules read parameter '" + written.subject.text + "' as " +
+                                  describe(*read) + ", and this is " + describe(typed.type),
+                              "write one type at both places: a node refuses another one"});
+    if (is_list && !typed.constant->text.ends_with(']'))
+      diagnostics_.push_back({Code::kNoValue, Severity::kWarning, written.value->span,
+                              "this list is not closed, so it is sent as a text",
+                              "write ']' at its end, as in \"[1, 2]\""});
   }
 
   std::optional<Typed> boolean(const syntax::Expression& e, const std::string& what) {
@@ -633,6 +666,19 @@ class Checker {
   std::vector<FileCondition> file_conditions_;
 };
 
+// A name of a template is one of the rules: a second USE with the same arguments gives it again.
+void name_uses(std::vector<Diagnostic>& diagnostics, const Source& source) {
+  for (Diagnostic& d : diagnostics) {
+    if (d.code != Code::kDuplicateName) continue;
+    const auto notes = located(d, source).notes;
+    const bool is_of_use =
+        std::ranges::any_of(notes, [](const auto& note) { return note.text == "used here"; });
+    if (is_of_use)
+      d.remedy =
+          "give each USE other arguments, and put a parameter into this name of the TEMPLATE";
+  }
+}
+
 // A mistake in a template repeats in each USE of it; one report is enough.
 void say_once(std::vector<Diagnostic>& diagnostics, const Source& source) {
   std::set<std::tuple<std::uint32_t, std::uint32_t, Code, std::string>> said;
@@ -693,6 +739,7 @@ Checked check(const Expansion& rules, const Parsed& whole, Strictness strictness
   if (!rules.mistakes.empty()) return {{}, rules.mistakes};
   Checked checked = check(whole, strictness);
   say_once(checked.diagnostics, rules.source);
+  name_uses(checked.diagnostics, rules.source);
   return checked;
 }
 

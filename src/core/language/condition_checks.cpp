@@ -391,6 +391,26 @@ void check_file_conditions(const std::vector<FileCondition>& conditions, const R
   }
 }
 
+void check_interlocked_rules(const std::vector<RuleConditions>& rules_of_file,
+                             const std::vector<FileCondition>& conditions, const RuleSet& rules,
+                             std::vector<Diagnostic>& diagnostics) {
+  for (const FileCondition& each : conditions) {
+    if (each.keyword != "INTERLOCK" || is_never(true, each.condition, rules)) continue;
+    for (const RuleConditions& rule : rules_of_file) {
+      const Policies& policies = rules[rule.rule].policies;
+      // A rule that counts cycles or acts on an edge also acts while its trigger is false.
+      if (rule.never_fires || rule.strategies.empty() || policies.hold_window > 1 ||
+          policies.on_change || !exclude_each_other(rule.trigger, each.condition, rules))
+        continue;
+      diagnostics.push_back({Code::kNeverValid, Severity::kWarning, rule.written->name.span,
+                             "no strategy of rule '" + rules[rule.rule].name +
+                                 "' ever starts: an INTERLOCK is false while its trigger is true",
+                             "let the INTERLOCK read something that this failure leaves true, such "
+                             "as a speed"});
+    }
+  }
+}
+
 void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
                        std::vector<Diagnostic>& diagnostics) {
   const Rule& checked = rules[rule.rule];

@@ -41,6 +41,11 @@ struct FileCondition {
 void check_file_conditions(const std::vector<FileCondition>& conditions, const RuleSet& rules,
                            std::vector<Diagnostic>& diagnostics);
 
+// An INTERLOCK that is false whenever the trigger of a rule is true: the rule's strategies never start.
+void check_interlocked_rules(const std::vector<RuleConditions>& rules_of_file,
+                             const std::vector<FileCondition>& conditions, const RuleSet& rules,
+                             std::vector<Diagnostic>& diagnostics);
+
 // A trigger that is true as long as everything lives.
 void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
                           std::vector<Diagnostic>& diagnostics);

@@ -81,6 +81,9 @@ enum class Code : std::uint16_t {
   kNoSuchHost = 69,
   kBadRequest = 70,
   kRunsOtherwise = 71,
+  // How components are started
+  kBadCommand = 72,
+  kNoContainer = 73,
   // Reuse
   kCannotInclude = 80,
   kUnknownTemplate = 81,

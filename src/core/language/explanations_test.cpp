@@ -76,6 +76,8 @@ bool exists(Code code) {
     case Code::kNoSuchHost:
     case Code::kBadRequest:
     case Code::kRunsOtherwise:
+    case Code::kBadCommand:
+    case Code::kNoContainer:
     case Code::kCannotInclude:
     case Code::kUnknownTemplate:
     case Code::kTemplateArguments:

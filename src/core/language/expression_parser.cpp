@@ -88,8 +88,9 @@ class ExpressionParser {
         if (auto slip = doubled(op, second)) return fail(std::move(*slip));
       }
       if (op.is("%") && !begins_value(scanner_.peek()))
-        return fail(Code::kSyntax, op.span, "unexpected '%' after a number",
-                    "write a share from 0 to 1, as in 0.2 for 20 percent");
+        return fail(
+            Code::kSyntax, op.span, "unexpected '%' after a number",
+            "write the value itself: a rate in Hz, a share from 0 to 1 (0.2 for 20 percent)");
       if (scanner_.at_end()) return unfinished(op);
       auto right = binary(found->precedence + 1, depth + length);
       if (!right) return std::nullopt;

@@ -34,6 +34,11 @@ constexpr auto kForeignStatements = std::to_array<ForeignWord>({
 
 // Several of ours: the first that the line may have.
 constexpr auto kForeignClauses = std::to_array<ForeignWord>({
+    {"HEALED", "RESOLVED"},
+    {"FAILS", "REFUSED"},
+    {"REJECTED", "REFUSED"},
+    {"ERR", "ERROR"},
+    {"MISSING", "absent"},
     {"COMMAND", "LAUNCH"},
     {"CMD", "LAUNCH"},
     {"EXEC", "LAUNCH"},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <set>
 #include <string_view>
 
@@ -99,6 +100,15 @@ void check_calls(const syntax::Expression& e,
   for (const syntax::Expression& child : e.children) check_calls(child, check);
 }
 
+// Calls `take` with the topic of each age(), rate(), phi() and loss() in `e`.
+void for_each_topic(const syntax::Expression& e,
+                    const std::function<void(const syntax::Name&)>& take) {
+  const bool is_of_topic = e.kind == syntax::Expression::Kind::kCall && !e.children.empty() &&
+                           is_one_of(e.name.text, {"age", "rate", "phi", "loss"});
+  if (is_of_topic) take(e.children[0].name);
+  for (const syntax::Expression& child : e.children) for_each_topic(child, take);
+}
+
 }  // namespace
 
 void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
@@ -164,6 +174,34 @@ void check_topics_as_components(const syntax::File& file, const RuleSet& rules,
       if (strategy.when) check_calls(*strategy.when, check);
       for (const syntax::Adaptation& a : strategy.adaptations) check(a.component);
     }
+  }
+}
+
+void check_nodes_as_topics(const syntax::File& file, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics) {
+  std::map<std::string_view, std::string_view> owners;  // by node
+  for (const Component& component : rules.components) {
+    if (component.declared && !component.node.empty())
+      owners.emplace(component.node, component.name);
+  }
+  const auto is_undeclared_node = [&](const syntax::Adaptation& a) {
+    return a.component.text.starts_with('/') && !owners.contains(a.component.text);
+  };
+  for (const syntax::Rule& rule : file.rules) {
+    const bool adapts_other = std::ranges::any_of(rule.strategies, [&](const auto& strategy) {
+      return std::ranges::any_of(strategy.adaptations, is_undeclared_node);
+    });
+    if (!adapts_other || !rule.trigger) continue;
+    for_each_topic(*rule.trigger, [&](const syntax::Name& topic) {
+      const auto owner = owners.find(topic.text);
+      if (owner == owners.end()) return;
+      diagnostics.push_back(
+          {Code::kUnknownName, Severity::kWarning, topic.span,
+           "'" + topic.text + "' is the node of component '" + std::string(owner->second) +
+               "', and is read as a topic here",
+           "if it was exchanged with the component that the rule adapts, write each in the other's "
+           "place"});
+    });
   }
 }
 

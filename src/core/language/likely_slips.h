@@ -25,6 +25,11 @@ void check_shell(const syntax::Component& written, const Component& component,
 void check_topics_as_components(const syntax::File& file, const RuleSet& rules,
                                 std::vector<Diagnostic>& diagnostics);
 
+// The node of a declared component where a topic belongs, in a rule that adapts an undeclared full name:
+// the two were exchanged, as in a USE.
+void check_nodes_as_topics(const syntax::File& file, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics);
+
 // Components that are declared and that nothing in the rules is about, if there are rules.
 void check_unused(const syntax::File& file, const RuleSet& rules,
                   std::vector<Diagnostic>& diagnostics);

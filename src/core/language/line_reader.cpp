@@ -200,7 +200,9 @@ std::optional<Name> LineReader::name_or_text(Scanner& s, std::string_view what) 
   fail(Code::kSyntax, name.span, "expected " + std::string(what),
        !name.text.empty() ? "it is too long for a name"
        : s.at_end()       ? "it is missing at the end of this line"
-                          : "blanks, commas and parentheses stand in a name only in quotes");
+       : source_.text(name.span) == "\"\""
+           ? "write it between the quotes"
+           : "blanks, commas and parentheses stand in a name only in quotes");
   return std::nullopt;
 }
 
@@ -589,6 +591,10 @@ bool LineReader::condition_ends(Scanner& s) {
   if (upper_case(token.text) == "FROM")
     return fail(Code::kExtraText, token.span, "FROM stands inside the parentheses",
                 "write it behind the topic, as in age(/scan FROM lidar)");
+  if (syntax::adaptation_type(token.text))
+    return fail(Code::kExtraText, token.span,
+                "'" + std::string(token.text) + "' is an adaptation, and no part of a condition",
+                "write only the condition, as in speed < 0.1; what to do stands in a STRATEGY");
   return line_ends(s, "join two conditions with && or ||, or remove it; a comment begins with #");
 }
 

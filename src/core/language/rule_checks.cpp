@@ -29,6 +29,19 @@ bool lacks_launch(const culprit::Adaptation& adaptation, const RuleSet& rules) {
   return adaptation.type == kStart && !component.can_start();
 }
 
+// Empty: a COMPONENT line declares it, and may get a LAUNCH.
+std::string remedy_of_undeclared(const Component& component, const RuleSet& rules) {
+  if (component.declared) return "";
+  const std::string& name = component.name;
+  const bool is_topic =
+      std::ranges::any_of(rules.topics, [&](const Topic& topic) { return topic.name == name; });
+  if (is_topic) return "this is a topic of these rules: write the component that publishes it";
+  const bool is_node = name.starts_with('/');
+  return "declare it: COMPONENT " +
+         (is_node ? name.substr(name.rfind('/') + 1) + " NODE " + name : name) +
+         " LAUNCH \"program arguments\"";
+}
+
 // It does no harm, so it is only a warning.
 constexpr const char* kRestartInVain =
     "the restart is in vain, for the component's process is ended after it";
@@ -330,12 +343,16 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
     }
     const bool is_ended = missing->type == kRedeploy;
     components.insert(rules[missing->component].name);
-    impossible.push_back({Code::kNoLaunch, Severity::kWarning, written->adaptations[place].span,
-                          "strategy '" + strategy.name + "' can never run: component '" +
-                              rules[missing->component].name + "' has no LAUNCH command",
-                          std::string("add LAUNCH \"program arguments\" to its COMPONENT line, "
-                                      "or UNIT if systemd runs it") +
-                              (is_ended ? ", or RESPAWNED if its launcher starts it again" : "")});
+    const std::string undeclared = remedy_of_undeclared(rules[missing->component], rules);
+    impossible.push_back(
+        {Code::kNoLaunch, Severity::kWarning, written->adaptations[place].span,
+         "strategy '" + strategy.name + "' can never run: component '" +
+             rules[missing->component].name + "' has no LAUNCH command",
+         !undeclared.empty()
+             ? undeclared
+             : std::string("add LAUNCH \"program arguments\" to its COMPONENT line, "
+                           "or UNIT if systemd runs it") +
+                   (is_ended ? ", or RESPAWNED if its launcher starts it again" : "")});
   }
   const bool is_never_valid = failing > 0 && failing == rules[id].strategies.size();
   if (is_never_valid && !misspelt.empty()) {
@@ -345,14 +362,18 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
   if (is_never_valid) {
     // One mistake, one message: this one says what those of the strategies would.
     const bool is_one = components.size() == 1;
+    const auto only = std::ranges::find(rules.components, *components.begin(), &Component::name);
+    const std::string undeclared = is_one ? remedy_of_undeclared(*only, rules) : "";
     diagnostics.push_back({Code::kNeverValid, Severity::kError, rule.name.span,
                            "no strategy of rule '" + rule.name.text + "' can ever run: " +
                                (is_one ? "component '" + *components.begin() + "' has"
                                        : "the components that they start have") +
                                " no LAUNCH command",
-                           std::string("add LAUNCH \"program arguments\" to ") +
-                               (is_one ? "its COMPONENT line" : "their COMPONENT lines") +
-                               ", or a strategy that needs none"});
+                           !undeclared.empty()
+                               ? undeclared
+                               : std::string("add LAUNCH \"program arguments\" to ") +
+                                     (is_one ? "its COMPONENT line" : "their COMPONENT lines") +
+                                     ", or a strategy that needs none"});
     return;
   }
   diagnostics.insert(diagnostics.end(), impossible.begin(), impossible.end());

@@ -293,7 +293,8 @@ Complaint complaint_about(const Token& bad) {
     case Token::Flaw::kLongName:
       return {"this name is longer than 255 characters", std::nullopt, "shorten it"};
     case Token::Flaw::kBrace:
-      return {"a parameter stands in braces, as in {name}"};
+      return {"a parameter stands in braces, as in {name}", std::nullopt,
+              "write one brace on each side of it"};
     case Token::Flaw::kNumber:
       return not_a_number(bad.span, rest.substr(0, bad.span.end - bad.span.begin));
     case Token::Flaw::kWholeNumber:

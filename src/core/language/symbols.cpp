@@ -224,7 +224,12 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
     return what.has_value();
   };
   const auto whole_path = [&](const syntax::Name& path) {
-    if (!path.text.starts_with('/'))
+    const auto blank = path.text.find(' ');
+    const std::string word = path.text.substr(0, blank);
+    if (blank != std::string::npos && (word == "source" || word == "." || word == "cd"))
+      report(path, "this is a command of a shell, and no path",
+             "write only the path: " + path.text.substr(path.text.find_first_not_of(' ', blank)));
+    else if (!path.text.starts_with('/'))
       report(path, "this path is not whole",
              path.text.starts_with('~') ? "write it from the root, as in /home/robot/ws"
                                         : "write it from the root, with a '/' in front");
@@ -611,8 +616,24 @@ std::optional<ParameterId> Symbols::known_parameter(ComponentId component,
   return found ? std::optional(ParameterId(*found)) : std::nullopt;
 }
 
+bool Symbols::is_group(std::string_view name) const {
+  const auto signal = known_signal(name);
+  return signal && std::holds_alternative<GroupId>(rules_[*signal].source);
+}
+
+// Reports the name once; later uses of it as a component get no message.
+ComponentId Symbols::group_as_component(const syntax::Name& name) {
+  diagnostics_.push_back({Code::kBadGroup, Severity::kError, name.span,
+                          "'" + name.text + "' is a group, and no component",
+                          "read it as a signal, as in " + name.text +
+                              " != \"active\", and adapt it with start_group, or name one of its "
+                              "components"});
+  return add_component({name.text, "", {""}, true});
+}
+
 ComponentId Symbols::component(const syntax::Name& name) {
   if (const auto known = known_component(name.text)) return *known;
+  if (is_group(name.text)) return group_as_component(name);
   report_undeclared(name, "component", declared_components_);
   const bool is_node = name.text.starts_with('/');
   return add_component({name.text, is_node ? name.text : "", {}, false});

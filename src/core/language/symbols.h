@@ -95,6 +95,8 @@ class Symbols {
   const std::vector<std::string_view>& sorted_values();
   std::string near_name(const std::string& name, const std::vector<std::string_view>& declared);
   std::optional<ParameterId> known_parameter(ComponentId component, std::string_view name) const;
+  bool is_group(std::string_view name) const;
+  ComponentId group_as_component(const syntax::Name& name);
   ComponentId add_component(Component component);
   SignalId add_signal(Signal signal, std::optional<Type> type = std::nullopt);
 

@@ -79,6 +79,8 @@ Diagnostic type_mismatch(const Expression& e, Type left, Type right, const std::
     remedy = truth_remedy(e, left == Type::kBool ? 0 : 1);
   if (verb != "compare" && left == Type::kString && right == Type::kString)
     remedy = "texts can only be compared: write the whole text in one pair of quotes";
+  if (verb != "compare" && (left == Type::kBool || right == Type::kBool))
+    remedy = "join conditions with && or ||, as in !alive(a) || !alive(b)";
   if (verb == "compare" && is_comparison(e.children[0]))
     remedy = "to test a range, write a < x && x < b";
   for (std::size_t i = 0; i < 2 && verb == "compare"; ++i) {

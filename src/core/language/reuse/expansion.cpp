@@ -286,7 +286,9 @@ class Expander {
     if (!fits(unit, use, filled.text.size())) return {};
     Unit body(std::move(filled));
     if (!body.said.empty()) {
-      blame(body.text, of_arguments(body));
+      std::vector<Diagnostic> said = of_arguments(body);
+      for (Diagnostic& each : said) compare_order(each, body, pattern);
+      blame(body.text, std::move(said));
       return {};
     }
     rules_ += body.tree.rules.size();
@@ -335,6 +337,17 @@ class Expander {
     }
     if (kept.empty()) kept.push_back(body.said.front());
     return kept;
+  }
+
+  // A full name where a name or a value belongs: most often two arguments were exchanged.
+  void compare_order(Diagnostic& said, const Unit& body, const syntax::Template& pattern) const {
+    const Origin origin = origin_of(said.span, body.text.pieces, steps_, body.text.size());
+    const std::string_view written = files_[origin.place.file].source.text(origin.place.span);
+    if (!origin.goes_in || said.code != Code::kSyntax || !written.starts_with('/')) return;
+    said.cause = "'" + std::string(written) +
+                 "' does not fit here: it is the full name of a topic or a node";
+    said.remedy = "compare the order of the arguments: USE " + usage_of(pattern);
+    said.fix.reset();
   }
 
   // `body` is what `use`, which stands in `unit`, becomes.
