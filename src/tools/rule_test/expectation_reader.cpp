@@ -71,6 +71,7 @@ class ExpectationReader {
       e_.kind = Kind::kBlamed;
       return names_clause(About::kComponent, "a component");
     }
+    if (is_out_of_order()) return false;
     const auto subject = read_.name_or_text(s_, "a rule, a strategy or a component");
     if (!subject) return false;
     // "NOT RGBDead": it is never detected.
@@ -102,7 +103,25 @@ class ExpectationReader {
     const auto fitting = verbs_of(subject->text);
     return read_.unexpected_clause(
         word, fitting,
-        word.kind == Token::Kind::kEnd ? "add for example " + std::string(fitting.front()) : "");
+        word.kind == Token::Kind::kEnd ? "add for example " + std::string(fitting.front())
+        : fits(subject->text, About::kComponent)
+            ? "of a component only blame is expected; a repair is RESOLVED of a rule, or EXECUTED "
+              "of a strategy"
+            : "");
+  }
+
+  // "NOT NO STRATEGY", "BY 5s CameraDead DETECTED": reported.
+  bool is_out_of_order() {
+    const Token& first = s_.peek();
+    if (knows(std::string(first.text))) return false;
+    if (first.text == "NO")
+      return !read_.fail(Code::kSyntax, first.span, "NOT and NO stand for the same",
+                         "write NO STRATEGY without NOT, or name the strategy that is CHOSEN");
+    const bool is_time_first = first.text == "BY" || first.text == "AFTER";
+    return is_time_first &&
+           !read_.fail(Code::kSyntax, first.span, "a time stands behind what is expected",
+                       "write it at the end, as in EXPECT Rule DETECTED " +
+                           std::string(first.text) + " 5s");
   }
 
   std::vector<std::string_view> verbs_of(const std::string& name) const {
@@ -184,7 +203,8 @@ class ExpectationReader {
       if (!clause()) return false;
     }
     const Duration by = e_.by.value_or(Duration::max());
-    return by >= e_.after || read_.fail(Code::kEmptyRange, by_span_, "BY is before AFTER", "");
+    return by >= e_.after || read_.fail(Code::kEmptyRange, by_span_, "BY is before AFTER",
+                                        "write the later time behind BY");
   }
 
   bool clause() {
@@ -220,6 +240,13 @@ class ExpectationReader {
                         "'" + std::string(missing) + "' is missing before this",
                         "write " + std::string(missing) + " in front of it",
                         Edit{{word.span.begin, word.span.begin}, std::string(missing) + " "});
+    const std::string upper = upper_case(word.text);
+    if (upper == "BETWEEN")
+      return read_.fail(Code::kSyntax, word.span, "unexpected '" + std::string(word.text) + "'",
+                        "write the two times as AFTER 1s BY 5s");
+    if (upper == "AND")
+      return read_.fail(Code::kSyntax, word.span, "one line expects one thing",
+                        "write an EXPECT line for each");
     return read_.unexpected_clause(word, known);
   }
 

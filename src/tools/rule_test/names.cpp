@@ -64,6 +64,17 @@ std::optional<I> Names::look_up(const Table<I>& table, const syntax::Name& name,
 }
 
 std::optional<ComponentId> Names::component(const syntax::Name& name) {
+  for (const Group& group : rules_.groups) {
+    if (group.name != name.text || components_.contains(name.text)) continue;
+    std::string members;
+    for (const ComponentId member : group.members)
+      members += (members.empty() ? "" : ", ") + rules_[member].name;
+    diagnostics_.push_back({Code::kUnknownName, Severity::kError, name.span,
+                            "'" + name.text + "' is a group, and no component",
+                            "name one of its components: " + members +
+                                "; what start_group answers stands behind STRATEGY"});
+    return std::nullopt;
+  }
   return look_up(components_, name, "component");
 }
 std::optional<RuleId> Names::rule(const syntax::Name& name) {
@@ -80,6 +91,16 @@ std::optional<DiagnosticId> Names::diagnostic(const syntax::Name& name) {
 }
 
 std::optional<StrategyId> Names::strategy(const syntax::Name& name) {
+  const std::string own = name.text.substr(name.text.rfind('.') + 1);
+  const auto of_other = strategies_.find(own);
+  if (!strategies_.contains(name.text) && own != name.text && of_other != strategies_.end() &&
+      !ambiguous_.contains(own)) {
+    const std::string& rule = rule_of(of_other->second);
+    diagnostics_.push_back({Code::kUnknownName, Severity::kError, name.span,
+                            "'" + own + "' is a strategy of rule " + rule,
+                            "write " + rule + "." + own});
+    return std::nullopt;
+  }
   if (!ambiguous_.contains(name.text)) return look_up(strategies_, name, "strategy");
   const Strategy& first = rules_[strategies_.at(name.text)];
   diagnostics_.push_back({Code::kDuplicateName, Severity::kError, name.span,
@@ -107,6 +128,12 @@ std::optional<Subject> Names::topic_or_signal(const syntax::Name& name) {
     diagnostics_.push_back({Code::kUnknownName, Severity::kError, name.span,
                             "'" + name.text + "' is a rule, not a topic or a signal",
                             "write the topics and signals that its trigger reads"});
+    return std::nullopt;
+  }
+  if (components_.contains(name.text) && !signals_.contains(name.text)) {
+    diagnostics_.push_back({Code::kUnknownName, Severity::kError, name.span,
+                            "'" + name.text + "' is a component, not a topic or a signal",
+                            "write the topics and signals that it publishes"});
     return std::nullopt;
   }
   const auto found = signal(name);

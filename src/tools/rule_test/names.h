@@ -31,6 +31,7 @@ class Names {
   std::optional<Subject> topic_or_signal(const syntax::Name& name);
 
   bool is_signal(const std::string& name) const { return signals_.contains(name); }
+  bool is_topic(const std::string& name) const { return topics_.contains(name); }
   bool is_rule(const std::string& name) const { return rules_by_name_.contains(name); }
   bool is_component(const std::string& name) const { return components_.contains(name); }
   bool is_strategy(const std::string& name) const { return strategies_.contains(name); }

@@ -72,12 +72,28 @@ class Reader {
     for (const std::string_view known : SetupReader::keywords()) {
       if (keyword != known) continue;
       has_scenario_ = !suite_.tests.empty();
-      return setup_.read(keyword, s, scenario());
+      const bool is_good = setup_.read(keyword, s, scenario());
+      if (is_good && has_scenario_) keep_moment(keyword);
+      return is_good;
     }
     for (const Statement& known : kStatements) {
       if (keyword == known.keyword) return (this->*known.read)(s);
     }
     return std::nullopt;
+  }
+
+  // When the last thing of a line of the test begins.
+  void keep_moment(std::string_view keyword) {
+    const Scenario& here = scenario();
+    Duration latest{};
+    if (keyword == "AT") latest = here.incidents.back().at;
+    if (keyword == "GOAL") latest = here.goals.back().from;
+    if (keyword == "LOG") latest = here.logs.back().from;
+    const bool is_course =
+        keyword == "TOPIC" || keyword == "SIGNAL" || keyword == "LEVEL" || keyword == "PARAMETER";
+    for (std::size_t i = 0; is_course && i < here.courses.back().stretches.size(); ++i)
+      latest = std::max(latest, here.courses.back().stretches[i].from);
+    moments_.push_back({keyword_, latest});
   }
 
   static std::vector<std::string_view> all_keywords() {
@@ -94,7 +110,8 @@ class Reader {
     if (!suite_.tests.empty()) return true;
     if (std::exchange(has_stray_line_, true)) return false;  // one TEST line is missing
     return read_.fail(Code::kOutOfPlace, keyword_, std::string(what) + " stands outside of a test",
-                      "begin one with TEST \"name\"");
+                      what == "RUN" ? "write it below the TEST line: each test has its own length"
+                                    : "begin one with TEST \"name\"");
   }
 
   // ---- the file and its tests
@@ -115,6 +132,7 @@ class Reader {
     suite_.tests.back().span = keyword_;
     is_broken_ = false;
     has_scenario_ = false;
+    moments_.clear();
     if (!name) return false;
     const bool is_quoted = source_.text()[name->span.begin] == '"';
     if (name->text.starts_with('\'') && s.peek().kind == Token::Kind::kIdentifier)
@@ -136,7 +154,7 @@ class Reader {
   void end_test() {
     if (suite_.tests.empty() || is_broken_) return;
     const Test& test = suite_.tests.back();
-    if (test.length == Duration::zero() && test.bag.empty())
+    if (test.length == Duration::zero() && test.bag.empty() && !has_stray_run_)
       read_.fail(Code::kIncomplete, test.span, "this test does not say how long it runs",
                  "add for example RUN 10s");
     if (!test.bag.empty() && has_scenario_)
@@ -146,6 +164,12 @@ class Reader {
     if (test.expectations.empty())
       read_.fail(Code::kIncomplete, test.span, "this test expects nothing",
                  "add for example EXPECT SomeRule RESOLVED BY 5s");
+    for (const Moment& each : moments_) {
+      if (test.length > Duration::zero() && each.begins >= test.length)
+        read_.fail(Code::kEmptyRange, each.span,
+                   "the test is over after " + to_string(test.length) + ", before this happens",
+                   "let it RUN longer, or write an earlier time");
+    }
     for (const Expectation& e : test.expectations) {
       if (test.length > Duration::zero() && (e.by.value_or(e.after) > test.length))
         read_.fail(Code::kEmptyRange, e.span,
@@ -155,6 +179,7 @@ class Reader {
   }
 
   bool run(Scanner& s) {
+    if (suite_.tests.empty() && !has_stray_line_) has_stray_run_ = true;
     if (!inside_test("RUN")) return false;
     Test& test = suite_.tests.back();
     const Span span = s.peek().span;
@@ -211,7 +236,13 @@ class Reader {
   std::vector<Diagnostic>& diagnostics_;
   Suite suite_;
   std::unordered_set<std::string> test_names_;
+  struct Moment {
+    Span span;
+    Duration begins{};
+  };
+  std::vector<Moment> moments_;  // of the lines of the test under way
   bool has_scenario_ = false;    // the test under way says what happens
+  bool has_stray_run_ = false;   // a RUN is what was reported outside of a test
   bool has_stray_line_ = false;  // outside of a test, which was reported
   bool is_broken_ = false;  // a line of the test under way; what follows from it is not reported
   Span keyword_;

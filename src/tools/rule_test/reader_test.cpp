@@ -79,5 +79,14 @@ TEST(Reader, SharesWhatStandsBeforeTheFirstTest) {
   EXPECT_TRUE(suite.tests[1].scenario.courses.empty());
 }
 
+TEST(Reader, NamesTheComponentsOfAGroupThatStandsForOne) {
+  const RuleSet rules = pipeline_rules("GROUP vision { camera } MANAGER fusion\n");
+  std::vector<Diagnostic> diagnostics;
+  read_suite(Source("x.test", "TEST t\n  AT 2s vision STATE inactive\n"), rules, diagnostics);
+  ASSERT_EQ(diagnostics.size(), 1u);
+  EXPECT_EQ(diagnostics[0].cause, "'vision' is a group, and no component");
+  EXPECT_NE(diagnostics[0].remedy.find("camera"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace culprit::rule_test

@@ -239,6 +239,10 @@ bool SetupReader::course(Scanner& s, Subject subject) {
 bool SetupReader::goal(Scanner& s) {
   auto action = read_.ros_name(s, "an action");
   if (!action) return false;
+  if (!names_.is_topic(action->text + std::string(kStatusOfAction)))
+    return read_.fail(Code::kUnknownName, action->span,
+                      "no trigger of the rules reads goals of '" + action->text + "'",
+                      "write an action that goals() or goal_age() names");
   action->text += kStatusOfAction;
   const auto topic = names_.topic(*action);
   const auto from = topic ? read_.duration(s, "when it begins") : std::nullopt;
@@ -296,6 +300,10 @@ bool SetupReader::at(Scanner& s) {
     if (!state)
       return read_.unexpected_clause(word, {"active", "inactive", "unconfigured", "finalized"});
     incident.lifecycle = *state;
+  } else if (lifecycle_of(what.text)) {
+    return read_.fail(Code::kSyntax, what.span, "STATE is missing before this",
+                      "write STATE " + std::string(what.text),
+                      Edit{{what.span.begin, what.span.begin}, "STATE "});
   } else {
     return read_.unexpected_clause(what, kIncidents);
   }
