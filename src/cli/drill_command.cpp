@@ -30,6 +30,7 @@
 #include "live/setups.h"
 #include "owners/units.h"
 #include "ros2/options.h"
+#include "terminal/command.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
 
@@ -462,9 +463,11 @@ void add_drill(CLI::App& app, int& exit_code) {
   command
       ->add_option("--record", options->record,
                    "Folder of the record; an unfinished drill of the same plan is resumed")
-      ->type_name("FOLDER");
+      ->type_name("FOLDER")
+      ->check(trouble_of_folder);
   command->add_option("--state-dir", options->state_folder, "Folder of logs and records")
       ->type_name("FOLDER")
+      ->check(trouble_of_folder)
       ->default_str("~/.local/state/culprit");
   command->add_flag("--write", options->writes, "Write measured numbers into the rule file");
   command->add_flag("--json", options->json, "Print the results as a JSON document");
@@ -472,7 +475,8 @@ void add_drill(CLI::App& app, int& exit_code) {
   command
       ->add_option("--export", options->exports,
                    "Write each fault as a test of the rules (culprit test)")
-      ->type_name("FOLDER");
+      ->type_name("FOLDER")
+      ->check(trouble_of_folder);
   add_seconds(*command, "--monitor", options->monitor_seconds,
               "Inject nothing: watch the healthy robot and propose thresholds", 1, 7 * 86400)
       ->default_str("")

@@ -61,6 +61,7 @@ TEST(ExitStatus, IsOneWhereAFileCannotBeRead) {
                                              {"export", "--json", missing},
                                              {"policy", missing},
                                              {"alerts", missing},
+                                             {"run", "--alerts", missing, "rules/sunset.rules"},
                                              {"modes", missing},
                                              {"plan", "--state", missing, "rules/sunset.rules"},
                                              {"plan", "--state", missing, missing},
@@ -98,6 +99,10 @@ TEST(ExitStatus, IsTwoWhereAnOptionMakesNoSense) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> calls = {
       {{"init", "-o", "no-such-folder-at-all/my.rules"}, "no-such-folder-at-all' to write"},
       {{"run", "--journal", "src", "rules/sunset.rules"}, "'src' is a folder"},
+      {{"run", "--state-dir", "Makefile", "rules/sunset.rules"}, "'Makefile' is a file"},
+      {{"run", "--record-folder", "Makefile", "rules/sunset.rules"}, "'Makefile' is a file"},
+      {{"run", "--address", "localhost:8080", "rules/sunset.rules"}, "--port 8080"},
+      {{"drill", "--state-dir", "Makefile", "rules/sunset.rules"}, "'Makefile' is a file"},
       {{"log", "--since", "-1h"}, "'-1h' is negative"},
       {{"explain", "--last", "--terms"}, "exclude each other"}};
   for (const auto& [words, cause] : calls) {

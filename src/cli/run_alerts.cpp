@@ -6,11 +6,15 @@
 
 namespace culprit::cli {
 
-Expected<std::unique_ptr<RunAlerts>> RunAlerts::open(const std::string& file) {
-  if (file.empty()) return std::unique_ptr<RunAlerts>();
+Expected<std::optional<alerts::Settings>> RunAlerts::read(const std::string& file) {
+  if (file.empty()) return std::optional<alerts::Settings>();
   auto settings = alerts::read_settings(file);
-  if (!settings) return Error{settings.error()};
-  return std::make_unique<RunAlerts>(std::move(*settings));
+  if (!settings) return Error{"--alerts: " + settings.error()};
+  return std::optional(std::move(*settings));
+}
+
+std::unique_ptr<RunAlerts> RunAlerts::open(std::optional<alerts::Settings> settings) {
+  return settings ? std::make_unique<RunAlerts>(std::move(*settings)) : nullptr;
 }
 
 RunAlerts::RunAlerts(alerts::Settings settings)

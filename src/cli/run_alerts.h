@@ -2,17 +2,21 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "alerts/courier.h"
+#include "alerts/settings.h"
 #include "live/alerting.h"
 
 namespace culprit::cli {
 
 class RunAlerts {
  public:
-  // Null if `file` is empty. Errors: the file is wrong.
-  static Expected<std::unique_ptr<RunAlerts>> open(const std::string& file);
+  // Without a `file`, there are no settings. Errors: the file is wrong.
+  static Expected<std::optional<alerts::Settings>> read(const std::string& file);
+  // Begins a thread, if there are receivers; else null.
+  static std::unique_ptr<RunAlerts> open(std::optional<alerts::Settings> settings);
   explicit RunAlerts(alerts::Settings settings);
 
   live::Observer& observer() { return alerting_; }

@@ -275,6 +275,8 @@ int run(const RunOptions& options) {
   const std::filesystem::path journal = options.journal_path(rules->rules);
   if (std::error_code error; std::filesystem::is_directory(journal, error))
     return fail("--journal: '" + options.journal + "' is a folder; name a file in it", kUsage);
+  auto receivers = RunAlerts::read(options.alerts);
+  if (!receivers) return fail(receivers.error());
   const auto trusted = live::trust_state(options.state_path(), journal);
   if (!trusted) return fail(trusted.error());
   live::make_private(journal);
@@ -295,8 +297,7 @@ int run(const RunOptions& options) {
   // Its thread is not to be ended by a signal.
   auto fleet = join_fleet(options.fleet, journal);
   if (!fleet) return fail(fleet.error(), kUsage);
-  auto alerts = RunAlerts::open(options.alerts);
-  if (!alerts) return fail(alerts.error());
+  auto alerts = RunAlerts::open(std::move(*receivers));
   auto recording = RunRecording::open(options.recording,
                                       {options.version, rules->rules.robot, options.state_path(),
                                        session->robot.link.participant, session->robot.link.types});
@@ -304,7 +305,7 @@ int run(const RunOptions& options) {
   const std::string robot =
       fmt::format("{}/{}", session->robot.link.participant.domain, rules->rules.robot);
   Run whole(options, rules->rules,
-            {std::move(*session), std::move(*fleet), std::move(*alerts), std::move(*recording)},
+            {std::move(*session), std::move(*fleet), std::move(alerts), std::move(*recording)},
             std::move(*role), remarks);
   if (const auto ended = whole.manage(std::move(*rules), signals); !ended)
     return fail(ended.error());

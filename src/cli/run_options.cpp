@@ -8,6 +8,7 @@
 #include "live/link_program.h"
 #include "live/robot_survey.h"
 #include "live/run_journal.h"
+#include "terminal/command.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
@@ -98,6 +99,7 @@ void RunOptions::add_ways(CLI::App& command) {
 void RunOptions::add_files(CLI::App& command) {
   command.add_option("--state-dir", state_folder, "Folder for logs of started components")
       ->type_name("FOLDER")
+      ->check(trouble_of_folder)
       ->default_str("~/.local/state/culprit");
   auto* kept = command
                    .add_option("--journal", journal,

@@ -1,6 +1,7 @@
 #include "cli/run_recording.h"
 
 #include "base/name_grammar.h"
+#include "terminal/command.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
@@ -56,7 +57,8 @@ void RecordingOptions::add_to(CLI::App& command) {
   command
       .add_option("--record-folder", folder,
                   "Folder for recordings (default: recordings in the state folder)")
-      ->type_name("FOLDER");
+      ->type_name("FOLDER")
+      ->check(trouble_of_folder);
   add_snapshot(command, snapshot_of,
                "Request a snapshot from this recorder at each incident; the one of 'ros2 bag "
                "record --snapshot-mode' is /rosbag2_recorder (docs/recording.md)")

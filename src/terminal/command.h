@@ -14,4 +14,7 @@ constexpr int kWarnings = 3;  // and no error
 // Says on stderr why it cannot be done. Gives `exit_code`.
 int fail(const std::string& why, int exit_code = kFailed);
 
+// Why `path` cannot be a folder, which may not be there yet: it is a file. Empty: it can.
+std::string trouble_of_folder(const std::string& path);
+
 }  // namespace culprit

@@ -2,10 +2,22 @@
 
 #include <fmt/core.h>
 
+#include "base/name_grammar.h"
 #include "terminal/console.h"
 #include "web/app.h"
 
 namespace culprit {
+namespace {
+
+// "localhost:8080"; an address of IPv6 has more than one ':'.
+std::string trouble_of_address(const std::string& address) {
+  const auto colon = address.find(':');
+  if (colon == std::string::npos || address.find(':', colon + 1) != std::string::npos) return "";
+  return fmt::format("an address has no port; write --address {} --port {}",
+                     printable(address.substr(0, colon)), printable(address.substr(colon + 1)));
+}
+
+}  // namespace
 
 void WebOptions::add_to(CLI::App& command) {
   const std::string kGroup = "Web app";
@@ -20,6 +32,7 @@ void WebOptions::add_to(CLI::App& command) {
   command
       .add_option("--address", address,
                   "Address of the web app; one that other machines can reach needs --token-file")
+      ->check(trouble_of_address)
       ->capture_default_str()
       ->group(kGroup);
   command

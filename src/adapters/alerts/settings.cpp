@@ -154,9 +154,14 @@ Expected<Settings> read_settings(const std::string& path) {
   if (path.ends_with(".rules"))
     return Error{fmt::format(
         "'{}' is a rule file; the receivers of alerts stand in a file of their own", path)};
+  if (read_url(path))
+    return Error{
+        "an address is a secret: write it into a private file, and name that (docs/alerts.md)"};
   struct stat status {};
   if (stat(path.c_str(), &status) != 0)
-    return Error{fmt::format("cannot read '{}': {}", path, std::strerror(errno))};
+    return Error{fmt::format(
+        "cannot read '{}': {}; name the file with the receivers of alerts (docs/alerts.md)", path,
+        std::strerror(errno))};
   if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
     return Error{fmt::format(
         "others can read '{}', and the addresses in it are secrets; chmod 600 it", path)};
