@@ -65,7 +65,7 @@ constexpr std::array kSteps = {
          " && suave --claims --runs 400 --vehicle WORK/vehicle.json",
          "suave --fit-rows none,bt --runs 20 --output WORK/vehicle.json"
          " && suave --claims --runs 30 --vehicle WORK/vehicle.json",
-         40, 8},
+         18, 4},
     Step{"rca", "rca --components 20 --faults 3 --episodes 300 --seed 2026",
          "rca --components 20 --faults 3 --episodes 40 --planner naive,paper,bayes --seed 2026", 10,
          2},
@@ -84,8 +84,8 @@ constexpr std::array kSteps = {
     Step{"rca-regret", "rca --regret --systems 400 --seed 2026",
          "rca --regret --systems 30 --seed 2026", 80, 5},
     Step{"rca-cases", "rca --export-cases WORK/cases --cases 200 --seed 2026 && score",
-         "rca --export-cases WORK/cases --cases 20 --seed 2026 && score", 30, 10},
-    Step{"rover", "rover && rover --faults pairs", "rover", 60, 5},
+         "rca --export-cases WORK/cases --cases 20 --seed 2026 && score", 8, 4},
+    Step{"rover", "rover && rover --faults pairs", "rover", 50, 3},
     Step{"fleet", "fleet --models 12", "fleet --models 4 --robots 3", 140, 14},
 };
 
