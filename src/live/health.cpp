@@ -31,9 +31,10 @@ ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
       health.message = "the failure is there";
       break;
     case RulePhase::kAttempting:
+      health.values.emplace_back("strategy", knowledge.rules[state.attempt->strategy].name);
+      if (!knowledge.states.has_failure(id)) return health;
       health.level = kWarn;
       health.message = "under repair";
-      health.values.emplace_back("strategy", knowledge.rules[state.attempt->strategy].name);
       break;
     case RulePhase::kExhausted:
       health.level = kError;
@@ -65,7 +66,8 @@ std::vector<ros2::Health> health(const Knowledge& knowledge) {
   int exhausted = 0;
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     all.push_back(of_rule(RuleId(r), knowledge));
-    failing += knowledge.states.is_active(RuleId(r)) ? 1 : 0;
+    const bool is_active = knowledge.states.is_active(RuleId(r));
+    failing += is_active && knowledge.states.has_failure(RuleId(r)) ? 1 : 0;
     exhausted += all.back().level == kError ? 1 : 0;
   }
   const std::size_t blind = knowledge.blindness.count();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/tool_names.h"
+#include "knowledge/attempts.h"
 #include "language/checker.h"
 
 namespace culprit::live {
@@ -52,6 +53,18 @@ TEST(HealthReport, WarnsOfAFailureUnderRepairAndErrsWhenNothingIsLeftToTry) {
   EXPECT_EQ(all[0].message, "0 failing, 1 exhausted");
   EXPECT_EQ(all[1].name, "culprit: A");
   EXPECT_EQ(all[1].level, 2);
+}
+
+// A person ordered it.
+TEST(HealthReport, IsOkWhileAStrategyIsUnderWayWithoutAFailure) {
+  const RuleSet rules = two_rules();
+  Knowledge knowledge(rules);
+  Attempts(knowledge.states).begin(StrategyId(0), Time());
+  const auto all = health(knowledge);
+  EXPECT_EQ(all[0].level, 0);
+  EXPECT_EQ(all[0].message, "all rules are quiet");
+  EXPECT_EQ(all[1].level, 0);
+  EXPECT_EQ(all[1].message, "quiet");
 }
 
 TEST(HealthReport, WarnsOfABlindRule) {

@@ -9,8 +9,8 @@ std::vector<std::size_t> health_of_components(const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   std::vector<std::size_t> health(rules.components.size());
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    if (!knowledge.states.has_failure(RuleId(r))) continue;
     const RulePhase phase = knowledge.states[RuleId(r)].phase;
-    if (phase == RulePhase::kQuiet) continue;
     const std::size_t level =
         phase == RulePhase::kExhausted
             ? std::size(kHealthWords) - 1

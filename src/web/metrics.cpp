@@ -135,7 +135,7 @@ void Metrics::look(const Manager& manager, Counts& counts) {
        {Criticality::kNonCritical, Criticality::kWarning, Criticality::kError})
     counts.open[label("criticality", culprit::to_string(c))] = 0;
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
-    if (knowledge.states[RuleId(r)].phase == RulePhase::kQuiet) continue;
+    if (!knowledge.states.has_failure(RuleId(r))) continue;
     const Criticality c = knowledge.rules.rules[r].policies.criticality;
     ++counts.open[label("criticality", culprit::to_string(c))];
   }

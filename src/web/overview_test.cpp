@@ -124,6 +124,22 @@ TEST(Overview, SaysThatItCannotHearTheRobot) {
   EXPECT_EQ(some.look(0).look, "BLIND");
 }
 
+TEST(Overview, SaysOfNoComponentThatWasSeenThatItWasNot) {
+  Overlooked some;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("lamp");
+  some.robot.discover();
+  some.run(30s);
+  some.robot.tell(HearingLost{"a test"});
+  some.robot.tell(NodeVanished{"/camera"});
+  some.run(1s);
+  ASSERT_FALSE(some.robot.manager().knowledge().components[ComponentId(0)].alive)
+      << transcript(some.robot);
+  EXPECT_EQ(some.look(0).look, "BLIND");
+  EXPECT_THAT(some.look(0).condition, testing::AnyOf("unknown", "starting"));
+  EXPECT_EQ(some.look(2).look, "NEVER_SEEN");
+}
+
 TEST(Overview, SaysWhoseSimulatedTimeStandsStill) {
   Overlooked some;
   some.robot.add("camera", {}, "/rgb");
@@ -141,6 +157,22 @@ TEST(Overview, SaysWhoseSimulatedTimeStandsStill) {
   some.run(5s);
   EXPECT_EQ(some.overview().look, "OK");
   EXPECT_EQ(some.look(0).look, "OK");
+}
+
+// A person ordered it: that something is done to a component does not make it ill.
+TEST(Overview, CallsNoComponentIllBecauseAStrategyIsUnderWayWithoutAFailure) {
+  Overlooked some;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("lamp").parameters["on"] = Value(std::int64_t{0});
+  some.robot.discover();
+  some.run(30s);
+  some.robot.order({1, "ada", "", RunStrategy{StrategyId(1)}});
+  const RuleStates& states = some.robot.manager().knowledge().states;
+  for (int i = 0; i < 100 && !states[RuleId(1)].attempt; ++i) some.robot.run_for(1ms);
+  ASSERT_EQ(states[RuleId(1)].phase, RulePhase::kAttempting) << transcript(some.robot);
+  EXPECT_EQ(some.overview().headline, "all is well");
+  EXPECT_EQ(some.look(1).look, "OK") << "as the headline says";
+  EXPECT_EQ(incidents_to_json(some.robot.manager(), Time{}), Json::array());
 }
 
 TEST(Overview, IsTheFirstIncidentAndCountsTheOthers) {

@@ -11,7 +11,7 @@ import { type Incident, listed } from './incidents'
 import { usePaced } from './paced'
 import { signalOf, toAddress } from './plotted'
 import { isIll, kLooks, type Look, rankOf } from './looks'
-import { blindRules, can, clockAt, conditionAt, culprits, graph, isLive, live, looks, now, robot, selected, state } from './store'
+import { blindRules, can, clockAt, conditionAt, culprits, graph, isLive, live, looks, now, robot, selected, state, verdict } from './store'
 import type { Candidate, Criticality, Evidence, ManagerEvent } from './types'
 
 export const kWords: Record<Criticality, string> = {
@@ -338,7 +338,7 @@ export function Components() {
       return { name, host: computer, space: full.slice(0, full.lastIndexOf('/')) || '/', look: looks.value.get(name) ?? 'UNTOLD', condition: conditionAt(name), isBlamed: blamed.has(name) }
     })
     return all.sort((a, b) => Number(b.isBlamed) - Number(a.isBlamed) || rankOf(a.look) - rankOf(b.look))
-  }, kPeriod)
+  }, kPeriod, () => verdict.value)
   const wanted = search.value.toLowerCase()
   const found = entries.value.filter(
     (e) => e.name.toLowerCase().includes(wanted) && kLevels[level.value](e.look) && (!host.value || e.host === host.value) && (!space.value || e.space === space.value)

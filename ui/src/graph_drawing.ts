@@ -91,6 +91,12 @@ export class Drawing {
     if (isNew) this.fit()
   }
 
+  // In this frame.
+  drawAtOnce(): void {
+    this.draw()
+    this.scene.drawAtOnce()
+  }
+
   // Other groups stand elsewhere, and so do the nodes of another robot.
   private regroup(): void {
     this.grouping = effective.value

@@ -1,12 +1,12 @@
 // The live dependency graph: data flows from left to right, health is shown by colour, shape and word, the culprit and
 // the path of its cascade stand out.
-import { effect } from '@preact/signals'
+import { effect, untracked } from '@preact/signals'
 import { useEffect, useRef } from 'preact/hooks'
 import { Drawing, isUpright, kDiscovery } from './graph_drawing'
 import { cascade, search, shown, showsAll } from './graph_model'
 import { effective, groupBy, type Grouping, grouping, kGroupings } from './grouping'
 import { tell } from './notices'
-import { culprits, isLive, looks, robot, selected, situation, state } from './store'
+import { culprits, isLive, looks, robot, selected, situation, state, verdict } from './store'
 import { isDark } from './theme'
 
 // A large graph takes a while to paint; changes at a shorter period would not be visible.
@@ -25,8 +25,13 @@ export function GraphView() {
     const turn = () => drawing.turn()
     isUpright.addEventListener('change', turn)
     let timer = 0
+    let drawn = verdict.peek()
     const stop = effect(() => {
       readAll()
+      if (verdict.value !== drawn) {
+        drawn = verdict.value
+        return untracked(() => drawing.drawAtOnce())
+      }
       if (timer !== 0) return
       timer = window.setTimeout(() => {
         timer = 0

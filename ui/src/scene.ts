@@ -151,6 +151,12 @@ export class Scene {
       })
   }
 
+  drawAtOnce(): void {
+    cancelAnimationFrame(this.frame)
+    this.frame = 0
+    this.draw()
+  }
+
   // The visible part of the drawing.
   get view(): Extent {
     const { x, y } = this.at({ x: 0, y: 0 })

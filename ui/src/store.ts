@@ -172,6 +172,9 @@ export const looks = computed((): Map<string, Look> => {
   if (isLive.value) return presentLooks.value
   return new Map((robot.value?.components ?? []).map(({ name }) => [name, failedThen.value.get(name) ?? 'UNTOLD']))
 })
+// Whether the robot is well, and which components are held responsible: all parts of the page say the same of it in each frame,
+// also those that follow the rest at a slower pace.
+export const verdict = computed(() => [state.value?.overview.look, ...culprits.value.keys()].join())
 // "down", "never seen"; empty: it works.
 export const conditionAt = (component: string): string =>
   isLive.value ? (stateOfComponent(component)?.condition ?? '') : situation.value.gone.has(component) ? 'down' : ''

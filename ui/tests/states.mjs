@@ -175,6 +175,47 @@ async function everyState(page, server) {
   await album.end()
 }
 
+// Notes each frame in which the status bar and a star disagree, as it is painted: observers of sizes come after all else of a frame.
+function watchFrames() {
+  const seen = (window.seenFrames = { count: 0, wrong: [] })
+  let labels = [] // of the graph, since it was drawn last
+  const { clearRect, fillText } = CanvasRenderingContext2D.prototype
+  const isGraph = ({ canvas }) => canvas.matches('.graph canvas:not(.minimap)')
+  CanvasRenderingContext2D.prototype.clearRect = function (...all) {
+    if (isGraph(this)) labels = []
+    return clearRect.apply(this, all)
+  }
+  CanvasRenderingContext2D.prototype.fillText = function (...all) {
+    if (isGraph(this)) labels.push(all[0])
+    return fillText.apply(this, all)
+  }
+  const probe = document.body.appendChild(document.createElement('i'))
+  probe.style.cssText = 'position: fixed; visibility: hidden; height: 1px; width: 1px'
+  new ResizeObserver(() => {
+    ++seen.count
+    const said = document.querySelector('.status-bar .cause b').textContent
+    const isBlamed = { bar: said.startsWith('camera is down'), graph: labels.some((each) => each.startsWith('★')), list: !!document.querySelector('[aria-label="Components"] ul')?.textContent.includes('★') }
+    if (labels.length > 0 && new Set(Object.values(isBlamed)).size > 1) seen.wrong.push(JSON.stringify({ said, ...isBlamed }))
+    requestAnimationFrame(() => (probe.style.width = probe.style.width === '1px' ? '2px' : '1px'))
+  }).observe(probe)
+}
+
+// A robot that falls ill and recovers again and again: no frame blames a node beside "All is well".
+async function neverSaysTwoThings(page, server) {
+  play(server, kStates.ill)
+  await page.getByRole('region', { name: 'Status' }).getByText('camera is down').waitFor()
+  await page.getByRole('region', { name: 'Components' }).getByText('★').waitFor()
+  await page.waitForTimeout(500) // the graph is laid out
+  await page.evaluate(watchFrames)
+  for (let i = 0; i < 40; ++i) {
+    server.tell('state', state(kNow + i / 100, i % 2 ? kStates.ill.state : kStates.well.state))
+    await page.waitForTimeout(20 + 7 * (i % 5))
+  }
+  await expectSoon(() => page.evaluate('seenFrames.count > 30'), 'hardly a frame was painted')
+  const { count, wrong } = await page.evaluate('seenFrames')
+  expect(wrong.length === 0, `${wrong.length} of ${count} frames say two things, as ${wrong[0]}`)
+}
+
 // The page says so soon if the connection only falls silent. By clocks that run.
 async function isNeverOldInSecret(page, server) {
   const bar = page.getByRole('region', { name: 'Status' })
@@ -207,5 +248,6 @@ async function asksAgain(page, server) {
 await suite(async () => {
   await stubbed(kCalls, asksAgain, kToday)
   await stubbed(kCalls, everyState, kToday)
+  await stubbed(kCalls, neverSaysTwoThings, kToday)
   await stubbed(kCalls, isNeverOldInSecret)
 })

@@ -14,14 +14,12 @@ bool contains(const auto& all, const auto& each) {
   return std::find(all.begin(), all.end(), each) != all.end();
 }
 
-// Ascending. A strategy that a person ordered may be under way without a failure.
+// Ascending.
 std::vector<RuleId> failures_of(const Knowledge& knowledge) {
   std::vector<RuleId> all;
   for (const auto* list : {&knowledge.states.active(), &knowledge.states.exhausted()}) {
-    std::ranges::copy_if(*list, std::back_inserter(all), [&](RuleId id) {
-      const auto& attempt = knowledge.states[id].attempt;
-      return !attempt || !attempt->has_no_failure;
-    });
+    std::ranges::copy_if(*list, std::back_inserter(all),
+                         [&](RuleId id) { return knowledge.states.has_failure(id); });
   }
   std::ranges::sort(all, {}, &RuleId::index);
   return all;

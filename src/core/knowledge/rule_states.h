@@ -174,6 +174,12 @@ class RuleStates {
   void enter(RuleId id, RulePhase phase);
 
   bool is_active(RuleId id) const { return is_active(states_[id.index].phase); }
+  // Is its failure there, as far as anybody can know? A strategy may be under way without one: a person ordered it, or it
+  // is being undone.
+  bool has_failure(RuleId id) const {
+    const RuleState& state = states_[id.index];
+    return state.phase != RulePhase::kQuiet && !(state.attempt && state.attempt->has_no_failure);
+  }
   // Rules that are failing or attempting, ascending.
   const std::vector<RuleId>& active() const { return active_; }
 
