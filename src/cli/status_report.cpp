@@ -311,10 +311,9 @@ std::vector<std::string> component_lines(const WhatCulpritSays& said, Colour col
     const std::string condition = text_at(each, "condition");
     const std::string process = text_at(each, "process");
     const std::string adapting = text_at(each, "adapting");
-    // A component that no rule can judge has no health.
-    const std::string health = look == "NEVER_SEEN" || look == "BLIND" || look == "UNWATCHED"
-                                   ? "?"
-                                   : text_at(each, "health");
+    // Its look is its health where rules judge it; a component that is down without a failing rule is not OK.
+    std::string health = text_at(each, "health");
+    if (!look.empty() && look != health) health = "?";
     std::string line =
         fmt::format("{:<28} {} {:<12} {:<12} {}", text_at(names[c], "name"),
                     tinted(fmt::format("{:<12}", health), tone_of(look), colour),

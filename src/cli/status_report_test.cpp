@@ -151,6 +151,11 @@ TEST(StatusReport, GivesNoHealthToWhatNoRuleJudges) {
   const std::string text = all_of(said);
   EXPECT_THAT(text, testing::ContainsRegex("camera +\\? +never seen"));
   EXPECT_THAT(text, testing::ContainsRegex("fusion +OK +running"));
+  for (const auto& [look, condition] :
+       {std::pair("DEAD", "down"), std::pair("TIME_HELD", "clock paused")}) {
+    said.state["components"][0] = {{"health", "OK"}, {"look", look}, {"condition", condition}};
+    EXPECT_THAT(all_of(said), testing::ContainsRegex(std::string("camera +\\? +") + condition));
+  }
 }
 
 TEST(StatusReport, TakesDocumentsOfAnyForm) {

@@ -128,7 +128,11 @@ ComponentLook look_of(ComponentId id, std::size_t health, const Manager& manager
   } else if (state.alive == false) {
     look = {"DEAD", "down"};
   } else if (!state.alive && !knowledge.graph.is_present(id)) {
-    look = {"NEVER_SEEN", state.is_missed ? "never seen" : "not seen yet"};
+    if (!knowledge.discovered.has(id)) {
+      look = {"NEVER_SEEN", state.is_missed ? "never seen" : "not seen yet"};
+    } else {
+      look = {"BLIND", state.is_coming_up() ? "starting" : "unknown"};
+    }
   } else if (state.time_held) {
     look = {"TIME_HELD", "clock paused"};
   } else if (health == 0) {

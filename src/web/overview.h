@@ -27,7 +27,8 @@ Overview overview_of(const Manager& manager);
 // How one component looks, beside its health.
 struct ComponentLook {
   // As its health (web/component_health.h) where that is not OK; else "DEAD", "STOPPED", "HUNG", "UNREACHABLE": what
-  // became of its process; "NEVER_SEEN"; "TIME_HELD": its /clock stands still; "BLIND": all rules about it; "UNWATCHED": no rule is about it; "OK".
+  // became of its process; "NEVER_SEEN"; "TIME_HELD": its /clock stands still; "BLIND": all rules about it, or it was
+  // seen once, and nobody knows whether it is there; "UNWATCHED": no rule is about it; "OK".
   std::string_view look;
   std::string_view condition;  // in a word or two, for people; empty: it works
 };

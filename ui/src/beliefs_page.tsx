@@ -187,7 +187,7 @@ export function BeliefsPage() {
                   <tr class={i === chosen ? 'chosen' : ''}>
                     <th scope="row">
                       <button type="button" aria-pressed={i === chosen} onClick={() => choose(i)}>
-                        {entry.rule}.{entry.strategy.name}
+                        {entry.rule}.<wbr />{entry.strategy.name}
                       </button>
                     </th>
                     <td class="number">{percent(prior[0] / (prior[0] + prior[1]))}</td>

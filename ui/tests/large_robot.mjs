@@ -22,10 +22,15 @@ export function largeRobot(count) {
   }
   // One of them fails, another one 30 times a second.
   const stateAt = (t, clock = Date.now() / 1000) => {
-    const isIll = (i) => i === Math.floor(t * 30) % count
+    const ill = Math.floor(t * 30) % count
+    const isIll = (i) => i === ill
+    const incident = {
+      id: 'mywpiwzf-0k7', headline: `${names[ill]} is suspected`, health: 'ERROR', since: 0, rule: `Rule${ill}`, components: [names[ill]], certain: false, host: null,
+      consequences: [], needs_person: false, doing: 'nothing is done yet', next: '',
+    }
     return {
-      t, clock, incidents: [], overview: { look: 'OK', headline: 'all is well', detail: `no failure is seen by ${count} rules` },
-      rules: names.map(() => ({ phase: 'quiet', trigger: false })),
+      t, clock, incidents: [incident], overview: { look: 'ERROR', headline: incident.headline, detail: incident.doing },
+      rules: names.map((_, i) => (isIll(i) ? { phase: 'failing', trigger: true, since: 0, attempts: 0 } : { phase: 'quiet', trigger: false })),
       components: names.map((_, i) => ({ health: isIll(i) ? 'ERROR' : 'OK', look: isIll(i) ? 'ERROR' : 'OK', condition: '', present: true, alive: true })),
       topics: names.map((_, i) => ({ rate: 10 + ((t * 30 + i) % 7), age: 0.1 })),
       inputs: [], beliefs: names.map(() => [5, 5]), priors: names.map(() => [5, 5]),

@@ -3,7 +3,7 @@
 import { largeRobot } from './large_robot.mjs'
 import { isLaidOut } from './layout.mjs'
 import { kSizes, pictures } from './pictures.mjs'
-import { hinging, kHealed, kIncidentEvents, kIncidents, kNow, kPausedLater, kStates, kToday, play, state } from './robots.mjs'
+import { hinging, kHealed, kIncidentEvents, kIncidents, kNow, kPausedLater, kRobot, kStates, kToday, play, state } from './robots.mjs'
 import { expect, expectSoon, file, isAccessible, isFirefox, isUsableByKeyboard, kSchemes, saved, stubbed, suite } from './session.mjs'
 
 const kFindings = [
@@ -170,6 +170,22 @@ async function keepsItsPlaces(page, server) {
   await page.getByRole('status', { name: 'Notice' }).getByRole('button', { name: 'Undo' }).click()
   await page.waitForFunction((was) => localStorage.getItem('culprit-places rover') === was, JSON.stringify([...own]))
   await all.uncheck()
+}
+
+// Names of a real robot are long: the table of beliefs has all its columns on the screen.
+async function fitsLongNames(page, server) {
+  await become(page, server, kStates.well, 'beliefs')
+  const long = (rule) => ({ ...rule, name: 'SegmentationDead', strategies: rule.strategies.map((each, i) => ({ ...each, name: `segmentation_enhancement_${i}` })) })
+  server.tell('robot', { ...kRobot, rules: kRobot.rules.map(long) })
+  server.tell('state', state(kNow, {}))
+  const table = page.getByRole('group', { name: 'Beliefs' })
+  await table.getByText('SegmentationDead.segmentation_enhancement_1').waitFor()
+  for (const size of ['desktop', 'laptop', 'tablet', 'phone']) {
+    await page.setViewportSize(kSizes[size])
+    const hidden = await table.evaluate((box) => box.scrollWidth - box.clientWidth)
+    expect(hidden <= 0, `${hidden} pixels of the beliefs are not on the screen (${size})`)
+  }
+  await page.setViewportSize(kSizes.desktop)
 }
 
 // For a screen on a wall: the same words, and nothing to press but the way back.
@@ -510,6 +526,7 @@ await suite(() =>
       await tellsOfAComponent(page, server, album)
       await tellsWhatWouldChange(page, server)
       await keepsItsPlaces(page, server)
+      await fitsLongNames(page, server)
       await hangsOnTheWall(page, server, album)
       await tellsIncidents(page, server, album)
       await examines(page, server, album)

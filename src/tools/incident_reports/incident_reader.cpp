@@ -84,11 +84,13 @@ void IncidentReader::take(const Told& told, const std::string& id, const std::st
   incident.worst = std::max(incident.worst, incident.criticality);
   incident.is_given_up |= journal::flag_of(told.event, "exhausted");
   add_to(incident.rules, root);
-  for (const std::string& each : names_at(told.event, "consequences")) add_to(incident.rules, each);
-  incident.consequences.clear();
-  for (const std::string& each : incident.rules) {
-    if (each != root) incident.consequences.push_back(each);
+  const auto explained = names_at(told.event, "consequences");
+  for (const std::string& each : explained) {
+    add_to(incident.rules, each);
+    add_to(incident.consequences, each);
   }
+  // The last failure that is left explains no other; what explained it is over.
+  if (!explained.empty()) std::erase(incident.consequences, root);
   // Components of a rule alone are no cause.
   const bool is_certain = journal::flag_of(told.event, "certain");
   const bool is_known = is_certain || journal::flag_of(told.event, "suspected") ||

@@ -205,6 +205,26 @@ TEST_F(JournalIncidents, OfAManagerAreToldFromTheirOpeningHoweverLongAgo) {
       << "whatever its id says of its beginning";
 }
 
+// An effect that clears a moment after its cause is no cause.
+TEST_F(JournalIncidents, CallTheRootNoEffectIfOneOfItsEffectsOutlivesIt) {
+  session(0, 1);
+  incident(10, "incident_opened", "a-000", "CameraDead", {}, "camera", 0);
+  incident(11, "incident_changed", "a-000", "CameraDead", {"FusionSilent"}, "camera", 1);
+  incident(12, "incident_changed", "a-000", "FusionSilent", {}, "camera", 2);
+  incident(13, "incident_closed", "a-000", "FusionSilent", {}, "camera", 3, {{"how", "resolved"}});
+  const auto all = since(0);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_THAT(all[0].rules, ElementsAre("CameraDead", "FusionSilent"));
+  EXPECT_THAT(all[0].consequences, ElementsAre("FusionSilent"));
+}
+
+TEST_F(JournalIncidents, TakeTheFailureThatWasSeenFirstForAnEffectIfAnotherExplainsIt) {
+  session(0, 1);
+  incident(10, "incident_opened", "a-000", "FusionSilent", {}, "fusion", 0);
+  incident(11, "incident_changed", "a-000", "CameraDead", {"FusionSilent"}, "camera", 1);
+  EXPECT_THAT(since(0).at(0).consequences, ElementsAre("FusionSilent"));
+}
+
 TEST_F(JournalIncidents, SayHowTheyEnded) {
   session(0, 1);
   incident(10, "incident_opened", "a-000", "CameraDead", {}, "camera", 0);
