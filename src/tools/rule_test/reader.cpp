@@ -82,18 +82,22 @@ class Reader {
     return std::nullopt;
   }
 
-  // When the last thing of a line of the test begins.
+  // When the first change that a line of the test describes comes. A course may go on after the test.
   void keep_moment(std::string_view keyword) {
     const Scenario& here = scenario();
-    Duration latest{};
-    if (keyword == "AT") latest = here.incidents.back().at;
-    if (keyword == "GOAL") latest = here.goals.back().from;
-    if (keyword == "LOG") latest = here.logs.back().from;
+    Duration first{};
+    if (keyword == "AT") first = here.incidents.back().at;
+    if (keyword == "GOAL") first = here.goals.back().from;
+    if (keyword == "LOG") first = here.logs.back().from;
     const bool is_course =
         keyword == "TOPIC" || keyword == "SIGNAL" || keyword == "LEVEL" || keyword == "PARAMETER";
-    for (std::size_t i = 0; is_course && i < here.courses.back().stretches.size(); ++i)
-      latest = std::max(latest, here.courses.back().stretches[i].from);
-    moments_.push_back({keyword_, latest});
+    if (is_course) {
+      for (const auto& stretch : here.courses.back().stretches) {
+        const bool is_first = first == Duration::zero() || stretch.from < first;
+        if (stretch.from > Duration::zero() && is_first) first = stretch.from;
+      }
+    }
+    moments_.push_back({keyword_, first});
   }
 
   static std::vector<std::string_view> all_keywords() {
