@@ -5,8 +5,9 @@
 namespace culprit {
 namespace {
 
-// So many of its own stand for a rule.
+// So many of its own stand for a rule; so many, of so many rules, stand for all.
 constexpr int kEnough = 3;
+constexpr int kEnoughRules = 2;
 // The share of all rules counts like so many failures of the rule.
 constexpr double kOfAll = 2;
 
@@ -50,6 +51,9 @@ void Transients::set(RuleId rule, const Seen& seen) {
   seen_[rule.index] = seen;
   pooled_ = {};
   for (const Seen& each : seen_) pooled_ = sum(pooled_, each);
+  const auto rules =
+      std::ranges::count_if(seen_, [](const Seen& each) { return each.cleared > 0; });
+  if (pooled_.cleared < kEnough || rules < kEnoughRules) pooled_ = {0, pooled_.stayed, {}};
 }
 
 double Transients::share(RuleId rule) const {
@@ -59,7 +63,8 @@ double Transients::share(RuleId rule) const {
 }
 
 const Transients::Seen& Transients::basis(RuleId rule) const {
-  return seen_[rule.index].cleared < kEnough ? pooled_ : seen_[rule.index];
+  const bool counts_alone = seen_[rule.index].cleared >= kEnough || pooled_.cleared == 0;
+  return counts_alone ? seen_[rule.index] : pooled_;
 }
 
 Duration Transients::longest(RuleId rule) const { return basis(rule).longest; }

@@ -8,11 +8,12 @@
 //           not with a trouble upstream. It then stayed away for as long as it had lasted.
 //     m_r   how often it did not clear, although it was left alone for long enough, or came back sooner.
 //     s_r   the share that clears by itself: (n_r + 2 s) / (n_r + m_r + 2). s = n / (n + m + 1) is that of
-//           all rules.
-//     T_r   the longest time until it cleared by itself. While n_r < 3, all rules count.
+//           all rules that repair something; n = 0 while they do not count.
+//     T_r   the longest time until it cleared by itself. While n_r < 3, all rules count, once n >= 3 and of two rules:
+//           one failure of another component says nothing.
 //
 // The longest of few is short of what may come. So the planner leaves the failure alone for at most this
-// time, with n in place of n_r while n_r < 3:
+// time, with n in place of n_r where all rules count:
 //
 //     min(T_r (1 + 2 / n_r), kLongest)
 //

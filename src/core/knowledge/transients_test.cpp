@@ -11,6 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr RuleId kNoisy{std::size_t{0}};
 constexpr RuleId kOtherRule{std::size_t{1}};
+constexpr RuleId kThirdRule{std::size_t{2}};
 
 struct TransientFailures : testing::Test {
   // It is there for `lasted`, and was not back for long.
@@ -24,6 +25,8 @@ struct TransientFailures : testing::Test {
                                       "RULE Noisy\nPOLICIES ERROR\nTRIGGER x > 1\n"
                                       "STRATEGY again 90 10\nADAPTATION c restart 5\n"
                                       "RULE Other\nPOLICIES ERROR\nTRIGGER y > 1\n"
+                                      "STRATEGY again 90 10\nADAPTATION c restart 5\n"
+                                      "RULE Third\nPOLICIES ERROR\nTRIGGER z > 1\n"
                                       "STRATEGY again 90 10\nADAPTATION c restart 5\n"))
                              .rules;
   Transients transients{rules};
@@ -39,12 +42,21 @@ TEST_F(TransientFailures, AreNotWaitedForWhileNoneWasSeen) {
 TEST_F(TransientFailures, AreWaitedForAsLongAsTheyTookAndTheFewerTheLonger) {
   clears(kNoisy, 2s);
   EXPECT_EQ(transients.patience(kNoisy), 6s);
-  EXPECT_EQ(transients.patience(kOtherRule), 6s) << "monitors of one robot resemble each other";
   clears(kNoisy, 3s);
   EXPECT_EQ(transients.patience(kNoisy), 6s);
   for (int i = 0; i < 18; ++i) clears(kNoisy, 1s);
   EXPECT_EQ(transients.patience(kNoisy), 3300ms);
   EXPECT_GT(transients.share(kNoisy), 0.9);
+}
+
+TEST_F(TransientFailures, OfOtherRulesCountOnceTheyAreThreeOfTwoRules) {
+  for (int i = 0; i < 9; ++i) clears(kNoisy, 2s);
+  EXPECT_EQ(transients.patience(kOtherRule), 0s) << "one noisy monitor says nothing of another one";
+  EXPECT_EQ(transients.share(kOtherRule), 0);
+  clears(kOtherRule, 2s);
+  EXPECT_EQ(transients.patience(kOtherRule), 2400ms) << "monitors of one robot resemble each other";
+  EXPECT_GT(transients.share(kThirdRule), 0);
+  EXPECT_EQ(transients.patience(kThirdRule), 2400ms);
 }
 
 TEST_F(TransientFailures, AreNeverWaitedForLongerThanTenSeconds) {
