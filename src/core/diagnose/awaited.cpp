@@ -7,8 +7,10 @@
 namespace culprit::diagnose {
 namespace {
 
-// An outage costs more than a bad value, so it waits for no long window and no slow monitor.
-constexpr Duration kLongestReading = std::chrono::seconds(2);
+// An outage costs more than a bad value, so it waits for no long window, and for no monitor that is slower than this.
+constexpr Duration kLongestReading = Latencies::kSlowMonitor;
+// A coupling that was learned stands for a dependency from here on.
+constexpr double kCoupled = 0.5;
 
 std::size_t at(Symptom symptom) { return static_cast<std::size_t>(symptom); }
 
@@ -168,6 +170,14 @@ Duration Awaited::next_reading(const Best& evidence) const {
                             reading_of(*evidence.rule, knowledge_) + knowledge_.rules.cycle);
 }
 
+Time Awaited::shows_value(RuleId supplier, RuleId failure) const {
+  const Duration lateness = knowledge_.latencies.is_late(supplier)
+                                ? knowledge_.latencies.lateness(supplier).most
+                                : Duration::zero();
+  const Duration shown = reading_of(supplier, knowledge_) + lateness + knowledge_.rules.cycle;
+  return later(first_onset_of(failure, knowledge_), std::min(shown, kLongestReading));
+}
+
 Awaiting Awaited::of_declared_supplier(RuleId failure, ComponentId consumer) const {
   Awaiting found;
   for (const Dependency& d : knowledge_.rules.dependencies) {
@@ -175,9 +185,21 @@ Awaiting Awaited::of_declared_supplier(RuleId failure, ComponentId consumer) con
     if (d.consumer != consumer || !scc) continue;
     const Best& evidence = places_[*scc].own[at(Symptom::kValue)].without(failure);
     if (!evidence.rule) continue;
-    const Duration reading = std::min<Duration>(next_reading(evidence), kLongestReading);
-    const Time until = later(first_onset_of(failure, knowledge_), reading);
+    const Time until = shows_value(*evidence.rule, failure);
     if (until > found.until) found = {until, *evidence.rule, false};
+  }
+  return found;
+}
+
+Awaiting Awaited::of_learned_supplier(RuleId failure) const {
+  Awaiting found;
+  for (const auto& [cause, coupling] : knowledge_.couplings.of(failure)) {
+    const bool is_learned = coupling.cleared > 0 && coupling.mean(Coupling::kRare) > kCoupled;
+    if (!is_learned || symptom_of(cause, knowledge_) != Symptom::kValue ||
+        evidence_within(cause, knowledge_.now, knowledge_) == Duration::zero())
+      continue;
+    const Time until = shows_value(cause, failure);
+    if (until > found.until) found = {until, cause, false};
   }
   return found;
 }
@@ -215,15 +237,16 @@ Awaiting Awaited::awaiting(RuleId failure) const {
       wait_for(place.own[s], first_onset, state.first_detected());
       wait_for(place.own_again[s], onset, state.failing_since);
     }
-    const Awaiting reading = of_declared_supplier(failure, c);
-    if (!is_value && reading.until > found.until) found = reading;
+    const Awaiting supplier = of_declared_supplier(failure, c);
+    if (!is_value && supplier.until > found.until) found = supplier;
     for_each(upstream_past_[*scc], [&](std::size_t p) { fade(past_[p], passing); });
     for_each(own_past_[*scc], [&](std::size_t p) {
       const bool is_its_own = past_[p].component == c;
       if (is_its_own || is_circle_[*scc]) fade(past_[p], is_its_own ? Duration{} : passing);
     });
   }
-  return found;
+  const Awaiting learned = is_value ? Awaiting{} : of_learned_supplier(failure);
+  return learned.until > found.until ? learned : found;
 }
 
 Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {

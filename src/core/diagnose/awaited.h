@@ -3,8 +3,9 @@
 //
 //     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
 //                                                            symptom that can cause i's
-//           l_i + one reading and a cycle of u, at most 2 s  i is an outage, u of a value of a supplier
-//                                                            by DEPENDENCY (a rail, a hub)
+//           l_i + one reading, the lateness and a cycle      i is an outage, u of a value of a supplier
+//                 of u, at most 3 s                          by DEPENDENCY (a rail, a hub), or of one that i
+//                                                            was seen to clear with
 //     Z_i = max_u r_u + passing + C_i                        rules that cleared lately, and
 //                                                            components upstream (or i's own) that a
 //                                                            strategy began anew lately or that
@@ -80,9 +81,12 @@ class Awaited {
   void carry();
   void look_at(RuleId failure);
   Awaiting awaiting(RuleId failure) const;
-  // For an outage: the next reading of a value of what its component is declared to depend on. Bad data
-  // ends no data, but a rail or a hub that is off does.
+  // For an outage: a value of what its component is declared, or was seen, to depend on. Bad data ends no data,
+  // but a rail or a hub that is off does.
   Awaiting of_declared_supplier(RuleId failure, ComponentId consumer) const;
+  Awaiting of_learned_supplier(RuleId failure) const;
+  // When a bad value of the supplier that ends the failure's data has been shown.
+  Time shows_value(RuleId supplier, RuleId failure) const;
   // After the onset, as long as one more reading takes.
   Duration next_reading(const Best& evidence) const;
   // A past event that may still show effects: a failure that cleared, or a component that was down

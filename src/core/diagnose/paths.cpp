@@ -12,8 +12,10 @@ using Vertex = DependencyGraph::Vertex;
 
 // The quiet rules and the failures of a component, by symptom.
 struct Signs {
-  std::array<bool, 2> is_watched{};  // by a quiet rule of each kind
-  std::array<bool, 2> has_ill{};     // a rule of that kind is not quiet, or imminent
+  std::array<bool, 2> is_watched{};    // by a quiet rule of each kind
+  std::array<bool, 2> has_ill{};       // a rule of that kind is not quiet, or imminent
+  std::array<Duration, 2> fires_in{};  // after an onset, the quiet rules of that kind
+  Time ill_since = kLongAgo;           // the latest onset of what is ill
 
   // Bad values come of outages too, but no outages of bad values.
   bool is_ill(Symptom symptom) const {
@@ -49,26 +51,38 @@ bool has_heard(RuleId rule, const Knowledge& knowledge) {
 std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> imminent,
                             std::span<const std::optional<TroubleSeen>> troubles) {
   std::vector<Signs> signs(knowledge.rules.components.size());
-  const auto add = [&](RuleId rule, bool is_ill) {
+  const auto add_ill = [&](RuleId rule, Time since) {
+    for (const ComponentId c : spreads_from(rule, knowledge)) {
+      signs[c.index].has_ill[static_cast<std::size_t>(symptom_of(rule, knowledge))] = true;
+      signs[c.index].ill_since = std::max(signs[c.index].ill_since, since);
+    }
+  };
+  const auto add_quiet = [&](RuleId rule) {
+    if (knowledge.rules[rule].components.empty()) return;  // a quiet report proves no health
     const auto symptom = static_cast<std::size_t>(symptom_of(rule, knowledge));
-    const auto mark = [&](ComponentId c) {
-      (is_ill ? signs[c.index].has_ill : signs[c.index].is_watched)[symptom] = true;
-    };
-    if (is_ill)
-      std::ranges::for_each(spreads_from(rule, knowledge), mark);
-    else if (!knowledge.rules[rule].components.empty())  // a report that is quiet proves no health
-      std::ranges::for_each(touched_by(rule, knowledge), mark);
+    const Duration fires_in = evidence_within(rule, knowledge.now, knowledge);
+    for (const ComponentId c : touched_by(rule, knowledge)) {
+      Duration& longest = signs[c.index].fires_in[symptom];
+      signs[c.index].is_watched[symptom] = true;
+      longest = std::max(longest, fires_in);
+    }
   };
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     const RuleState& state = knowledge.states[RuleId(r)];
     const bool is_seen_ill = is_ill(state);
     const bool sees = state.detection.trigger.known && tells_of_data(RuleId(r), knowledge.rules) &&
                       has_heard(RuleId(r), knowledge);
-    if (is_seen_ill || sees) add(RuleId(r), is_seen_ill);
+    if (is_seen_ill)
+      add_ill(RuleId(r), onset_of(RuleId(r), knowledge).latest);
+    else if (sees)
+      add_quiet(RuleId(r));
   }
-  for (const RuleId rule : imminent) add(rule, true);
+  for (const RuleId rule : imminent)
+    add_ill(rule, onset_now(rule, knowledge.now, knowledge).latest);
   for (std::size_t c = 0; c < signs.size(); ++c) {
-    if (troubles[c]) signs[c].has_ill[static_cast<std::size_t>(Symptom::kOutage)] = true;
+    if (!troubles[c]) continue;
+    signs[c].has_ill[static_cast<std::size_t>(Symptom::kOutage)] = true;
+    signs[c].ill_since = std::max(signs[c].ill_since, troubles[c]->onset.latest);
   }
   return signs;
 }
@@ -85,11 +99,16 @@ class Narrowing {
   Narrowing(const Knowledge& knowledge, const std::vector<Signs>& signs, Symptom symptom)
       : knowledge_(knowledge),
         place_(knowledge.graph.size(), 0),
-        is_ill_(knowledge.graph.size(), false) {
+        is_ill_(knowledge.graph.size(), false),
+        ill_since_(knowledge.graph.size(), kLongAgo),
+        shows_within_(knowledge.graph.size()) {
+    const Duration passing = duration_of(kPassing, knowledge.rules);
     for (std::size_t c = 0; c < signs.size(); ++c) {
       const auto vertex = knowledge.graph.vertex_of(ComponentId(c));
       if (!vertex) continue;
       is_ill_[*vertex] = signs[c].is_ill(symptom);
+      ill_since_[*vertex] = signs[c].ill_since;
+      shows_within_[*vertex] = passing + signs[c].fires_in[static_cast<std::size_t>(symptom)];
       if (signs[c].is_well(symptom)) place_[*vertex] = kOut;
     }
     for (Vertex& place : place_) {
@@ -110,11 +129,13 @@ class Narrowing {
           if (producers.empty()) return;
           consumers.clear();
           std::size_t ill = 0;
+          std::size_t well = 0;
+          const Time since = latest_onset(from);
           for (const Vertex v : to) {
             if (place_[v] != kOut) consumers.push_back(place_[v]);
             ill += is_ill_[v] ? 1 : 0;
+            well += place_[v] == kOut && has_shown(v, since) ? 1 : 0;
           }
-          const std::size_t well = to.size() - consumers.size();
           if (!consumers.empty() && can_carry(well, ill)) edges.add(producers, consumers);
         });
     const Condensation graph(edges.vertices(), edges.edges());
@@ -131,9 +152,21 @@ class Narrowing {
  private:
   static constexpr Vertex kOut = static_cast<Vertex>(-1);
 
+  Time latest_onset(std::span<const Vertex> producers) const {
+    Time latest = kLongAgo;
+    for (const Vertex v : producers) latest = std::max(latest, ill_since_[v]);
+    return latest;
+  }
+  // Would it fail by now, if a failure of `since` then had reached it?
+  bool has_shown(Vertex consumer, Time since) const {
+    return knowledge_.now >= later(since, shows_within_[consumer]);
+  }
+
   const Knowledge& knowledge_;
   std::vector<Vertex> place_;  // among what is left
   std::vector<bool> is_ill_;
+  std::vector<Time> ill_since_;
+  std::vector<Duration> shows_within_;
   Vertex left_ = 0;
 };
 

@@ -8,7 +8,8 @@
 //     node answers or is active is no proof that anything comes through it;
 //   - topics and services that evidently carry no failures: of n consumers that are well or
 //     fail, more are well than kSpared n and kDeviations standard deviations of the binomial
-//     distribution. /tf and its like are read by many.
+//     distribution. /tf and its like are read by many. A consumer that is quiet counts once its rules would have
+//     fired for the failure of the producer: it may go on for a while with what it has.
 // A failure for which evidence can still come (awaited.h) has the whole graph: a quiet rule between
 // may only not have fired yet.
 //
