@@ -358,7 +358,7 @@ void Analyzer::judge(RuleId id, Time now) {
 
 // A started component has to make the publishers that it had, for which it may open a device first.
 // It has to discover its publishers; its subscribers have to discover it, too, where the rule reads
-// from them.
+// from them. READY says how long it may take until its first message.
 Time Analyzer::shows_from(const Attempt& attempt) const {
   const Strategy& strategy = knowledge_.rules[attempt.strategy];
   const auto is_read = [&](ComponentId component) {
@@ -373,6 +373,9 @@ Time Analyzer::shows_from(const Attempt& attempt) const {
     hearing.push_back(adaptation.component);
     const ComponentState& started = knowledge_.components[adaptation.component];
     if (is_read(adaptation.component)) speaks = std::max(speaks, started.awaits_ends_until);
+    if (is_silent_since_its_start(adaptation.component, strategy.rule))
+      speaks = std::max(speaks,
+                        later(attempt.first_change, knowledge_.rules[adaptation.component].ready));
     if (is_read(adaptation.component) && started.ends_back > started.node_seen)
       speaks = std::max(speaks, later(started.ends_back, knowledge_.finding));
     const auto& downstream = knowledge_.graph.downstream(adaptation.component);
@@ -380,6 +383,20 @@ Time Analyzer::shows_from(const Attempt& attempt) const {
   }
   const Time hears = std::min(knowledge_.can_hear_from(hearing), later(attempt.effective, kInputs));
   return std::max(hears, speaks);
+}
+
+// Does the rule wait for a topic of the component that nothing came on since its process began?
+bool Analyzer::is_silent_since_its_start(ComponentId component, RuleId rule) const {
+  const Time begun = knowledge_.components[component].node_seen;
+  bool is_silent = false;
+  for (const InputId id : knowledge_.rules[rule].inputs) {
+    const Input& input = knowledge_.rules[id];
+    if (!diagnose::watches_a_topic(input) || !may_be_of(component, input, knowledge_)) continue;
+    const auto& last = knowledge_.signals.rhythm(input.topic).last;
+    if (last && *last >= begun) return false;
+    is_silent = true;
+  }
+  return is_silent;
 }
 
 bool Analyzer::holds_up_more_critical(StrategyId strategy) const {
@@ -491,8 +508,9 @@ void Analyzer::note_latency(RuleId id, Time effective) {
     write_.latencies.cleared(id, cleared - effective);
 }
 
-// The failure clears, and no strategy was begun for it.
+// The failure clears, and no strategy was begun for it. What a report tells of is repaired by nobody, or by others.
 void Analyzer::note_transient(RuleId id) {
+  if (knowledge_.rules[id].strategies.empty()) return;
   const RuleState& state = knowledge_.states[id];
   const Search& search = state.search;
   if (search.attempts == search.attempts_before && couplings_.is_unaided(id))

@@ -154,6 +154,7 @@ class Analyzer {
   void judge(RuleId id, Time now);
   // Its effect cannot be seen before.
   Time shows_from(const Attempt& attempt) const;
+  bool is_silent_since_its_start(ComponentId component, RuleId rule) const;
   void end_attempt(RuleId id, Time now);
   void succeed(RuleId id, Time now);
   void fail(RuleId id, Time now);
