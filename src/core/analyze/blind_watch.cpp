@@ -5,6 +5,7 @@
 
 #include "knowledge/describe.h"
 #include "knowledge/named.h"
+#include "knowledge/old_value.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -25,15 +26,6 @@ bool is_of_component(const Input& input) {
 bool is_of_signal(const Input& input) {
   return !is_of_topic(input) && !is_of_component(input) && input.kind != Kind::kParameter &&
          input.kind != Kind::kLevel;
-}
-
-// The monitor forgets a signal at its STALE, and a window empties by itself.
-bool keeps_last_value(const Input& input, const RuleSet& rules) {
-  // The health of a group follows its members.
-  if (is_of_signal(input) && std::holds_alternative<GroupId>(rules[input.signal].source))
-    return false;
-  if (input.kind == Kind::kSignal || input.kind == Kind::kIsNan) return !rules[input.signal].stale;
-  return input.kind == Kind::kChanged || input.kind == Kind::kLevel;
 }
 
 // The part of the input that the robot never had.
@@ -120,7 +112,7 @@ void BlindWatch::advance(Time now) {
 }
 
 void BlindWatch::look_at(RuleId id, Time now) {
-  if (can_see(id, now))
+  if (can_see(id))
     look_at_seeing(id, now);
   else
     look_at_unseeing(id, now);
@@ -170,7 +162,7 @@ Duration BlindWatch::proof(const Sight& sight) const {
   return std::min<Duration>(kDebounce * (1 << doublings), kLongestProof);
 }
 
-bool BlindWatch::can_see(RuleId id, Time now) const {
+bool BlindWatch::can_see(RuleId id) const {
   const Rule& rule = knowledge_.rules[id];
   const Detection& detection = knowledge_.states[id].detection;
   const bool was_evaluated = detection.trigger_since != kLongAgo;
@@ -179,45 +171,17 @@ bool BlindWatch::can_see(RuleId id, Time now) const {
   if (!value.known || value.b) return value.known;
   std::vector<Assumed> without_old;
   for (const InputId input : may_be_old_[id.index]) {
-    if (is_old(input, now)) without_old.push_back({input, Slot()});
+    if (is_old(input, heard_from_, knowledge_)) without_old.push_back({input, Slot()});
   }
   return without_old.empty() ||
          evaluate(rule.trigger, knowledge_.signals.slots(), without_old).known;
-}
-
-bool BlindWatch::is_old(InputId id, Time now) const {
-  if (!knowledge_.signals[id].known || fresh_until(id) > now) return false;
-  const Input& input = knowledge_.rules[id];
-  if (input.kind == Kind::kLevel) return true;
-  const auto& source = knowledge_.rules[input.signal].source;
-  if (const auto* field = std::get_if<TopicField>(&source))
-    return knowledge_.graph.was_published(knowledge_.rules[field->topic].name);
-  const auto* parameter = std::get_if<ParameterId>(&source);
-  return parameter == nullptr ||
-         knowledge_.components[knowledge_.rules[*parameter].component].alive == false;
-}
-
-// When the last value can be old at the earliest; kNever: only another value says so.
-Time BlindWatch::fresh_until(InputId id) const {
-  const Input& input = knowledge_.rules[id];
-  const SignalStore::Arrivals& arrivals = knowledge_.signals.arrivals(id);
-  const Time last = std::max(arrivals.last, heard_from_);
-  if (input.kind != Kind::kLevel) {
-    const Signal& signal = knowledge_.rules[input.signal];
-    const bool is_diagnostic = std::holds_alternative<DiagnosticKey>(signal.source) ||
-                               std::holds_alternative<LookedUp>(signal.source);
-    if (!is_diagnostic) return later(last, kDebounce);
-    if (signal.stale) return later(last, *signal.stale);
-  }
-  if (arrivals.count < SignalStore::kRegular) return kNever;
-  return later(last, std::max<Duration>(kLeastPause, 10 * arrivals.gap));
 }
 
 Time BlindWatch::next_look_at_old(RuleId id, Time now) const {
   Time next = kNever;
   for (const InputId input : may_be_old_[id.index]) {
     // Until it is regular, or while its publisher is there.
-    const Time until = fresh_until(input);
+    const Time until = fresh_until(input, heard_from_, knowledge_);
     next = std::min(next, until == kNever || until <= now ? later(now, kDebounce) : until);
   }
   return next;
@@ -226,7 +190,8 @@ Time BlindWatch::next_look_at_old(RuleId id, Time now) const {
 std::optional<Unseen> BlindWatch::why_unseen(InputId id, Time now) const {
   if (!knowledge_.signals[id].known) return why_without_value(id, now);
   const bool may_be_old = keeps_last_value(knowledge_.rules[id], knowledge_.rules);
-  return may_be_old && is_old(id, now) ? std::optional(Unseen::kStale) : std::nullopt;
+  return may_be_old && is_old(id, heard_from_, knowledge_) ? std::optional(Unseen::kStale)
+                                                           : std::nullopt;
 }
 
 // @pre the input has no value

@@ -7,10 +7,7 @@
 //              rule is pending verification the rule is not called blind.
 //   debounce   kDebounce; or the longest STALE, usual pause or window of the inputs without a value,
 //              if that is longer. A window counts where samples come and do not cover it yet.
-//   old value  A value without a STALE may be old for ever. It no longer counts if its topic has no
-//              publisher any more, its component is lost, or its diagnostic has paused for ten times
-//              its usual pause (kLeastPause at least). Other topics may publish on demand, so
-//              their pauses prove nothing.
+//   old value  knowledge/old_value.h
 //   sees       The trigger has had a value again for kDebounce. The time doubles with each
 //              recurrence, up to kLongestProof, so that an input that comes and goes reports few
 //              events. The rule stays blind meanwhile. kProven without recurrence begins anew.
@@ -28,7 +25,6 @@ namespace culprit {
 class BlindWatch {
  public:
   static constexpr Duration kDebounce = std::chrono::seconds(5);
-  static constexpr Duration kLeastPause = std::chrono::seconds(10);
   static constexpr Duration kLongestProof = std::chrono::minutes(5);
   static constexpr Duration kProven = std::chrono::minutes(10);
 
@@ -64,9 +60,7 @@ class BlindWatch {
   void look_at(RuleId id, Time now);
   void look_at_seeing(RuleId id, Time now);
   void look_at_unseeing(RuleId id, Time now);
-  bool can_see(RuleId id, Time now) const;
-  bool is_old(InputId id, Time now) const;
-  Time fresh_until(InputId id) const;
+  bool can_see(RuleId id) const;
   std::optional<Unseen> why_unseen(InputId id, Time now) const;
   std::optional<Unseen> why_without_value(InputId id, Time now) const;
   Duration debounce(RuleId id, Time now) const;

@@ -6,7 +6,7 @@
 #include "execute/evidence.h"
 #include "knowledge/awaited_container.h"
 #include "knowledge/describe.h"
-#include "language/evaluate.h"
+#include "knowledge/old_value.h"
 
 namespace culprit {
 namespace {
@@ -228,7 +228,7 @@ std::optional<std::string> Governor::objection_to_last_resort(const Strategy& st
 
 std::optional<std::string> Governor::objection_by_when(const Strategy& strategy) const {
   if (strategy.when.empty()) return std::nullopt;
-  const Slot when = evaluate(strategy.when, knowledge_.signals.slots());
+  const Slot when = evaluate_now(strategy.when, knowledge_);
   return when.known && when.b ? std::nullopt
                               : std::optional<std::string>("its WHEN condition is not true");
 }
@@ -438,7 +438,7 @@ std::optional<Governor::Held> Governor::restraint_by_person(StrategyId id) const
 
 std::optional<Governor::Held> Governor::interlock() const {
   for (const Interlock& interlock : knowledge_.rules.interlocks) {
-    const Slot value = evaluate(interlock.condition, knowledge_.signals.slots());
+    const Slot value = evaluate_now(interlock.condition, knowledge_);
     if (!value.known || !value.b)
       return Held{Restraint::kInterlock,
                   "INTERLOCK " + interlock.text + (value.known ? " is false" : " is unknown"),

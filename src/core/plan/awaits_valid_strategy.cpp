@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "knowledge/old_value.h"
 #include "language/evaluate.h"
 
 namespace culprit::plan {
@@ -34,7 +35,7 @@ bool is_under_repair(ComponentId component, const Knowledge& knowledge) {
 
 bool awaits_when(const Strategy& strategy, const Knowledge& knowledge) {
   if (strategy.when.empty()) return false;
-  const Slot when = evaluate(strategy.when, knowledge.signals.slots());
+  const Slot when = evaluate_now(strategy.when, knowledge);
   return !when.known || !when.b;
 }
 

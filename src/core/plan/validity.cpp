@@ -7,7 +7,7 @@
 #include "diagnose/timing.h"
 #include "knowledge/group_health.h"
 #include "knowledge/held.h"
-#include "language/evaluate.h"
+#include "knowledge/old_value.h"
 #include "plan/also_ended.h"
 
 namespace culprit::plan {
@@ -305,7 +305,7 @@ std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Kno
 // Its WHEN condition is not true.
 std::optional<Invalid> untimely_by_when(const Strategy& strategy, const Knowledge& knowledge) {
   if (strategy.when.empty()) return std::nullopt;
-  const Slot when = evaluate(strategy.when, knowledge.signals.slots());
+  const Slot when = evaluate_now(strategy.when, knowledge);
   if (when.known && when.b) return std::nullopt;
   return Invalid{strategy.adaptations.front().component,
                  when.known ? "its WHEN condition is false" : "its WHEN condition is unknown"};
