@@ -508,7 +508,7 @@ void Analyzer::note_latency(RuleId id, Time effective) {
     write_.latencies.cleared(id, cleared - effective);
 }
 
-// The failure clears, and no strategy was begun for it. What a report tells of is repaired by nobody, or by others.
+// The failure clears, and no strategy was begun for it. A report has none: others may have repaired it.
 void Analyzer::note_transient(RuleId id) {
   if (knowledge_.rules[id].strategies.empty()) return;
   const RuleState& state = knowledge_.states[id];
