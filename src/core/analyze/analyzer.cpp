@@ -374,8 +374,8 @@ Time Analyzer::shows_from(const Attempt& attempt) const {
     const ComponentState& started = knowledge_.components[adaptation.component];
     if (is_read(adaptation.component)) speaks = std::max(speaks, started.awaits_ends_until);
     if (is_silent_since_its_start(adaptation.component, strategy.rule))
-      speaks = std::max(speaks,
-                        later(attempt.first_change, knowledge_.rules[adaptation.component].ready));
+      speaks = std::max(speaks, later(std::min(attempt.first_change, attempt.effective),
+                                      knowledge_.rules[adaptation.component].ready));
     if (is_read(adaptation.component) && started.ends_back > started.node_seen)
       speaks = std::max(speaks, later(started.ends_back, knowledge_.finding));
     const auto& downstream = knowledge_.graph.downstream(adaptation.component);
@@ -385,13 +385,16 @@ Time Analyzer::shows_from(const Attempt& attempt) const {
   return std::max(hears, speaks);
 }
 
-// Does the rule wait for a topic of the component that nothing came on since its process began?
+// Does the rule wait for a topic of the component that nothing came on since its process began? It may make its
+// publisher late.
 bool Analyzer::is_silent_since_its_start(ComponentId component, RuleId rule) const {
   const Time begun = knowledge_.components[component].node_seen;
   bool is_silent = false;
   for (const InputId id : knowledge_.rules[rule].inputs) {
     const Input& input = knowledge_.rules[id];
-    if (!diagnose::watches_a_topic(input) || !may_be_of(component, input, knowledge_)) continue;
+    if (!diagnose::watches_a_topic(input)) continue;
+    const bool has_publisher = knowledge_.graph.publisher_count(knowledge_.rules[input.topic]) > 0;
+    if (has_publisher && !may_be_of(component, input, knowledge_)) continue;
     const auto& last = knowledge_.signals.rhythm(input.topic).last;
     if (last && *last >= begun) return false;
     is_silent = true;

@@ -211,8 +211,9 @@ TEST(Awaited, ATopicThatSentSinceTheOnsetIsProof) {
   EXPECT_FALSE(awaited());
 }
 
-// A rail that is off ends the data of what hangs on it: its next reading, every 200 ms, and a cycle.
-TEST(Awaited, AnOutageWaitsForTheNextReadingOfADeclaredSupplier) {
+// A rail that is off ends the data of what hangs on it: that is shown with its next reading, every 200 ms, the
+// lateness of its monitor, and a cycle.
+TEST(Awaited, AnOutageWaitsForTheValueOfADeclaredSupplier) {
   std::string text = failure_of("a", "A") + failure_of("b", "B") + "DEPENDENCY b ON a\n";
   text.replace(text.rfind("x > 1"), 5, "age(/out) > 500ms");
   Scene scene(text);
@@ -224,9 +225,27 @@ TEST(Awaited, AnOutageWaitsForTheNextReadingOfADeclaredSupplier) {
     scene->states.state(scene.rule("B")).onset = Onset{onset - 100ms, onset};
     return Awaited(*scene, scene->states.active()).of(scene.rule("B"));
   };
-  ASSERT_TRUE(awaited(399ms));
-  EXPECT_EQ(awaited(399ms)->because, scene.rule("A"));
-  EXPECT_FALSE(awaited(401ms));
+  const Duration shown = 400ms + scene->latencies.lateness(scene.rule("A")).most;
+  ASSERT_TRUE(awaited(shown - 1ms));
+  EXPECT_EQ(awaited(shown - 1ms)->because, scene.rule("A"));
+  EXPECT_FALSE(awaited(shown + 1ms));
+}
+
+// It was seen to clear with the rule of a value, though nothing declares that it depends on it.
+TEST(Awaited, AnOutageWaitsForTheValueOfALearnedSupplier) {
+  std::string text = failure_of("a", "A") + failure_of("b", "B");
+  text.replace(text.rfind("x > 1"), 5, "age(/out) > 500ms");
+  Scene scene(text);
+  scene.fail("B", 9900ms);
+  scene->states.state(scene.rule("B")).onset = Onset{scene->now - 200ms, scene->now - 100ms};
+  scene->states.state(scene.rule("A")).detection.trigger = Slot::of(false);
+  const auto is_awaited = [&] {
+    return Awaited(*scene, scene->states.active()).of(scene.rule("B")).has_value();
+  };
+  scene->couplings.cleared(scene.rule("A"), scene.rule("B"));
+  EXPECT_FALSE(is_awaited()) << "once may be chance";
+  for (int i = 0; i < 3; ++i) scene->couplings.cleared(scene.rule("A"), scene.rule("B"));
+  EXPECT_TRUE(is_awaited());
 }
 
 // Bad data ends no data: neither a value that can still show, nor one that cleared a moment ago.

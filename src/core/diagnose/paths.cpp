@@ -15,12 +15,16 @@ struct Signs {
   std::array<bool, 2> is_watched{};    // by a quiet rule of each kind
   std::array<bool, 2> has_ill{};       // a rule of that kind is not quiet, or imminent
   std::array<Duration, 2> fires_in{};  // after an onset, the quiet rules of that kind
-  Time ill_since = kLongAgo;           // the latest onset of what is ill
+  std::array<Time, 2> ill_since{kLongAgo, kLongAgo};  // the latest onset of what is ill
 
   // Bad values come of outages too, but no outages of bad values.
   bool is_ill(Symptom symptom) const {
     return has_ill[static_cast<std::size_t>(Symptom::kOutage)] ||
            has_ill[static_cast<std::size_t>(symptom)];
+  }
+  Time ill_from(Symptom symptom) const {
+    return std::max(ill_since[static_cast<std::size_t>(Symptom::kOutage)],
+                    ill_since[static_cast<std::size_t>(symptom)]);
   }
   bool is_well(Symptom symptom) const {
     return !is_ill(symptom) && is_watched[static_cast<std::size_t>(symptom)];
@@ -52,9 +56,10 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
                             std::span<const std::optional<TroubleSeen>> troubles) {
   std::vector<Signs> signs(knowledge.rules.components.size());
   const auto add_ill = [&](RuleId rule, Time since) {
+    const auto symptom = static_cast<std::size_t>(symptom_of(rule, knowledge));
     for (const ComponentId c : spreads_from(rule, knowledge)) {
-      signs[c.index].has_ill[static_cast<std::size_t>(symptom_of(rule, knowledge))] = true;
-      signs[c.index].ill_since = std::max(signs[c.index].ill_since, since);
+      signs[c.index].has_ill[symptom] = true;
+      signs[c.index].ill_since[symptom] = std::max(signs[c.index].ill_since[symptom], since);
     }
   };
   const auto add_quiet = [&](RuleId rule) {
@@ -73,7 +78,9 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
     const bool sees = state.detection.trigger.known && tells_of_data(RuleId(r), knowledge.rules) &&
                       has_heard(RuleId(r), knowledge);
     if (is_seen_ill)
-      add_ill(RuleId(r), onset_of(RuleId(r), knowledge).latest);
+      add_ill(RuleId(r), state.phase == RulePhase::kQuiet
+                             ? onset_now(RuleId(r), knowledge.now, knowledge).latest
+                             : onset_of(RuleId(r), knowledge).latest);
     else if (sees)
       add_quiet(RuleId(r));
   }
@@ -81,8 +88,9 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
     add_ill(rule, onset_now(rule, knowledge.now, knowledge).latest);
   for (std::size_t c = 0; c < signs.size(); ++c) {
     if (!troubles[c]) continue;
-    signs[c].has_ill[static_cast<std::size_t>(Symptom::kOutage)] = true;
-    signs[c].ill_since = std::max(signs[c].ill_since, troubles[c]->onset.latest);
+    const auto outage = static_cast<std::size_t>(Symptom::kOutage);
+    signs[c].has_ill[outage] = true;
+    signs[c].ill_since[outage] = std::max(signs[c].ill_since[outage], troubles[c]->onset.latest);
   }
   return signs;
 }
@@ -107,7 +115,7 @@ class Narrowing {
       const auto vertex = knowledge.graph.vertex_of(ComponentId(c));
       if (!vertex) continue;
       is_ill_[*vertex] = signs[c].is_ill(symptom);
-      ill_since_[*vertex] = signs[c].ill_since;
+      ill_since_[*vertex] = signs[c].ill_from(symptom);
       shows_within_[*vertex] = passing + signs[c].fires_in[static_cast<std::size_t>(symptom)];
       if (signs[c].is_well(symptom)) place_[*vertex] = kOut;
     }
@@ -130,7 +138,9 @@ class Narrowing {
           consumers.clear();
           std::size_t ill = 0;
           std::size_t well = 0;
-          const Time since = latest_onset(from);
+          // Of producers that no rule watches only the effects are seen.
+          const Time known = latest_onset(from);
+          const Time since = known == kLongAgo ? latest_onset(to) : known;
           for (const Vertex v : to) {
             if (place_[v] != kOut) consumers.push_back(place_[v]);
             ill += is_ill_[v] ? 1 : 0;
@@ -152,9 +162,9 @@ class Narrowing {
  private:
   static constexpr Vertex kOut = static_cast<Vertex>(-1);
 
-  Time latest_onset(std::span<const Vertex> producers) const {
+  Time latest_onset(std::span<const Vertex> vertices) const {
     Time latest = kLongAgo;
-    for (const Vertex v : producers) latest = std::max(latest, ill_since_[v]);
+    for (const Vertex v : vertices) latest = std::max(latest, ill_since_[v]);
     return latest;
   }
   // Would it fail by now, if a failure of `since` then had reached it?

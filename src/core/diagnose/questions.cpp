@@ -161,10 +161,12 @@ Questions questions_to(std::span<const ComponentId> components, RuleId failure,
   return questions;
 }
 
+// The second question is asked at once, so a later one that is open is a third.
 bool answers_no_question(const ComponentState& state) {
   const Questioned& questioned = state.questioned;
-  return state.answers_probes && questioned.unanswered && !questioned.is_open &&
-         questioned.at > *questioned.unanswered;
+  if (!state.answers_probes || !questioned.unanswered || questioned.is_pointless) return false;
+  const Time second = later(*questioned.unanswered, 2 * kLongestQuestion);
+  return questioned.at > (questioned.is_open ? second : *questioned.unanswered);
 }
 
 bool is_overdue(ComponentId component, const Knowledge& knowledge) {

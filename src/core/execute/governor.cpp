@@ -228,7 +228,7 @@ std::optional<std::string> Governor::objection_to_last_resort(const Strategy& st
 
 std::optional<std::string> Governor::objection_by_when(const Strategy& strategy) const {
   if (strategy.when.empty()) return std::nullopt;
-  const Slot when = evaluate_now(strategy.when, knowledge_);
+  const Slot when = evaluate_when(strategy, knowledge_);
   return when.known && when.b ? std::nullopt
                               : std::optional<std::string>("its WHEN condition is not true");
 }

@@ -120,8 +120,12 @@ void StrategyExecutor::ask(ComponentId component, StrategyId strategy, Duration 
 }
 
 void StrategyExecutor::forget_questions() {
-  for (const Question& each : questions_)
-    write_.components[each.component].questioned.is_open = false;
+  // Whether they would have been answered is unknown.
+  for (const Question& each : questions_) {
+    Questioned& questioned = write_.components[each.component].questioned;
+    questioned.is_open = false;
+    questioned.unanswered.reset();
+  }
   questions_.clear();
 }
 
@@ -144,7 +148,8 @@ void StrategyExecutor::note_answer(const Question& question, Outcome outcome) {
   Questioned& questioned = state.questioned;
   questioned.is_open = false;
   if (outcome == Outcome::kDone) return;  // the monitor notes it
-  if (outcome == Outcome::kTimedOut && knowledge_.now < unsure_until_) return;
+  if (outcome == Outcome::kTimedOut && knowledge_.now < unsure_until_)
+    return questioned.unanswered.reset();
   questioned.is_pointless = outcome != Outcome::kTimedOut || !state.answers_probes;
   if (!questioned.unanswered && !questioned.is_pointless) questioned.unanswered = questioned.at;
 }

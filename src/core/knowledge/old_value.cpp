@@ -1,9 +1,6 @@
 #include "knowledge/old_value.h"
 
 #include <algorithm>
-#include <vector>
-
-#include "language/evaluate.h"
 
 namespace culprit {
 
@@ -44,7 +41,7 @@ Time fresh_until(InputId id, Time heard_from, const Knowledge& knowledge) {
   return later(last, std::max<Duration>(kLeastPause, 10 * arrivals.gap));
 }
 
-Slot evaluate_now(const Program& condition, const Knowledge& knowledge) {
+std::vector<Assumed> without_old_values(const Program& condition, const Knowledge& knowledge) {
   std::vector<Assumed> without_old;
   for (const Instruction& each : condition.code) {
     if (each.op != Op::kInput) continue;
@@ -52,7 +49,16 @@ Slot evaluate_now(const Program& condition, const Knowledge& knowledge) {
     if (keeps_last_value(knowledge.rules[id], knowledge.rules) && is_old(id, kLongAgo, knowledge))
       without_old.push_back({id, Slot()});
   }
-  return evaluate(condition, knowledge.signals.slots(), without_old);
+  return without_old;
+}
+
+Slot evaluate_now(const Program& condition, const Knowledge& knowledge) {
+  return evaluate(condition, knowledge.signals.slots(), without_old_values(condition, knowledge));
+}
+
+Slot evaluate_when(const Strategy& strategy, const Knowledge& knowledge) {
+  return strategy.is_last_resort ? evaluate(strategy.when, knowledge.signals.slots())
+                                 : evaluate_now(strategy.when, knowledge);
 }
 
 }  // namespace culprit

@@ -6,8 +6,10 @@
 #pragma once
 
 #include <chrono>
+#include <vector>
 
 #include "knowledge/knowledge.h"
+#include "language/evaluate.h"
 
 namespace culprit {
 
@@ -27,7 +29,14 @@ Time fresh_until(InputId input, Time heard_from, const Knowledge& knowledge);
 // @pre keeps_last_value()
 bool is_old(InputId input, Time heard_from, const Knowledge& knowledge);
 
-// The condition as it is now: with unknown in place of old values, which are never a reason to act.
+// The inputs of the condition whose values are old: unknown. They are never a reason to act.
+std::vector<Assumed> without_old_values(const Program& condition, const Knowledge& knowledge);
+
+// The condition as it is now.
 Slot evaluate_now(const Program& condition, const Knowledge& knowledge);
+
+// The WHEN of the strategy as it is now. That of a last resort counts on the last value: it never waits.
+// @pre it has one
+Slot evaluate_when(const Strategy& strategy, const Knowledge& knowledge);
 
 }  // namespace culprit

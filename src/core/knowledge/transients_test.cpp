@@ -76,8 +76,10 @@ TEST_F(TransientFailures, AreNoneIfTheyAreBackSoonerThanTheyLasted) {
 
 TEST_F(TransientFailures, BecomeRareWithEachThatStays) {
   clears(kNoisy, 2s);
+  clears(kThirdRule, 2s);
+  clears(kThirdRule, 2s);
   const double before = transients.share(kNoisy);
-  for (int i = 0; i < 10; ++i) transients.stayed(kOtherRule);
+  for (int i = 0; i < 20; ++i) transients.stayed(kOtherRule);
   EXPECT_LT(transients.share(kNoisy), before);
   EXPECT_LT(transients.share(kOtherRule), 0.1);
 }

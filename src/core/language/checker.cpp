@@ -571,7 +571,7 @@ class Checker {
                               "the rules read parameter '" + written.subject.text + "' as " +
                                   describe(*read) + ", and this is " + describe(typed.type),
                               "write one type at both places: a node refuses another one"});
-    if (is_list && !typed.constant->text.ends_with(']'))
+    if (is_list && typed.constant->text.find(']') == std::string::npos)
       diagnostics_.push_back({Code::kNoValue, Severity::kWarning, written.value->span,
                               "this list is not closed, so it is sent as a text",
                               "write ']' at its end, as in \"[1, 2]\""});

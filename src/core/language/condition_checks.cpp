@@ -399,8 +399,12 @@ void check_interlocked_rules(const std::vector<RuleConditions>& rules_of_file,
     for (const RuleConditions& rule : rules_of_file) {
       const Policies& policies = rules[rule.rule].policies;
       // A rule that counts cycles or acts on an edge also acts while its trigger is false.
-      if (rule.never_fires || rule.strategies.empty() || policies.hold_window > 1 ||
-          policies.on_change || !exclude_each_other(rule.trigger, each.condition, rules))
+      // An interlock does not hold a last resort.
+      const bool has_last_resort = std::ranges::any_of(
+          rules[rule.rule].strategies, [&](StrategyId s) { return rules[s].is_last_resort; });
+      if (rule.never_fires || rule.strategies.empty() || has_last_resort ||
+          policies.hold_window > 1 || policies.on_change ||
+          !exclude_each_other(rule.trigger, each.condition, rules))
         continue;
       diagnostics.push_back({Code::kNeverValid, Severity::kWarning, rule.written->name.span,
                              "no strategy of rule '" + rules[rule.rule].name +

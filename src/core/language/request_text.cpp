@@ -79,9 +79,12 @@ class RequestText {
   }
 
   void quoted(char quote) {
+    const auto is_escaped = [&](std::size_t at) {
+      return quote == '"' ? text_[at] == '\\' : text_.substr(at, 2) == "''";
+    };
     std::size_t end = at_ + 1;
-    while (end < text_.size() && text_[end] != quote)
-      end += quote == '"' && text_[end] == '\\' ? 2 : 1;
+    while (end < text_.size() && (text_[end] != quote || is_escaped(end)))
+      end += is_escaped(end) ? 2 : 1;
     if (end >= text_.size())
       flaw_ = {"a quote is not closed in this request",
                "write the missing " + std::string(1, quote)};

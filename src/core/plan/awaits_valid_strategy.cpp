@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "knowledge/old_value.h"
-#include "language/evaluate.h"
 
 namespace culprit::plan {
 namespace {
@@ -35,7 +34,7 @@ bool is_under_repair(ComponentId component, const Knowledge& knowledge) {
 
 bool awaits_when(const Strategy& strategy, const Knowledge& knowledge) {
   if (strategy.when.empty()) return false;
-  const Slot when = evaluate_now(strategy.when, knowledge);
+  const Slot when = evaluate_when(strategy, knowledge);
   return !when.known || !when.b;
 }
 
@@ -61,7 +60,7 @@ std::optional<Slot> brought_about(const Adaptation& adaptation, const Input& inp
 }
 
 bool makes_true(const Strategy& strategy, const Program& when, const Knowledge& knowledge) {
-  std::vector<Assumed> assumed;
+  std::vector<Assumed> assumed = without_old_values(when, knowledge);
   for (const Instruction& each : when.code) {
     if (each.op != Op::kInput) continue;
     const InputId input(each.operand);
@@ -69,7 +68,9 @@ bool makes_true(const Strategy& strategy, const Program& when, const Knowledge& 
     for (const Adaptation& adaptation : strategy.adaptations) {
       if (auto made = brought_about(adaptation, knowledge.rules[input])) value = made;
     }
-    if (value) assumed.push_back({input, *value});
+    if (!value) continue;
+    std::erase_if(assumed, [&](const Assumed& old) { return old.input == input; });
+    assumed.push_back({input, *value});
   }
   const Slot result = evaluate(when, knowledge.signals.slots(), assumed);
   return result.known && result.b;

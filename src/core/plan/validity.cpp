@@ -29,6 +29,11 @@ bool is_of_process(AdaptationType type) {
          type == AdaptationType::kStop;
 }
 
+// The component's node has to answer. (Modes are a mode manager's.)
+bool sends_request(const Adaptation& adaptation) {
+  return !is_of_process(adaptation.type) && adaptation.type != AdaptationType::kChangeMode;
+}
+
 // A member of a group that start_group has to start first.
 bool starts_member(const Adaptation& adaptation, const Knowledge& knowledge) {
   return adaptation.group && adaptation.type == AdaptationType::kActivate &&
@@ -48,16 +53,16 @@ std::string missing_for(const Adaptation& adaptation, const Knowledge& knowledge
   return starts && !missing.empty() ? "cannot be started: " + missing : "";
 }
 
-// It was asked several times since its last answer and is silent, so it would not answer a request of the
+// It was asked twice since its last answer and is silent, so it would not answer a request of the
 // strategy either. The monitor calls it hung only after a longer pause than it ever had.
 bool owes_answers(ComponentId component, const Knowledge& knowledge) {
   constexpr int kUnanswered = 2;
   constexpr Duration kVerdict = std::chrono::milliseconds(1900);  // as answer_to_come() waits
   const ComponentState& state = knowledge.components[component];
-  const bool missed = state.answers_probes && state.missed_probes >= kUnanswered &&
-                      later(state.answered, kVerdict) <= knowledge.now;
-  return (missed || diagnose::answers_no_question(state)) && state.changes_until == kNever &&
-         !knowledge.heard_topic(component, knowledge.now);
+  const bool was_asked = (state.answers_probes && state.missed_probes >= kUnanswered) ||
+                         diagnose::answers_no_question(state);
+  return was_asked && later(state.answered, kVerdict) <= knowledge.now &&
+         state.changes_until == kNever && !knowledge.heard_topic(component, knowledge.now);
 }
 
 bool uses_already(const Adaptation& change, const Knowledge& knowledge) {
@@ -84,8 +89,6 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
       break;
   }
   if (!is_alive) return "is not alive";
-  const bool is_of_node = adaptation.type != AdaptationType::kChangeMode;  // a mode manager's
-  if (is_of_node && owes_answers(adaptation.component, knowledge)) return "does not answer";
   if (is_left_alone(adaptation, knowledge)) return "is set back by something else";
   switch (adaptation.type) {
     case AdaptationType::kActivate:
@@ -305,7 +308,7 @@ std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Kno
 // Its WHEN condition is not true.
 std::optional<Invalid> untimely_by_when(const Strategy& strategy, const Knowledge& knowledge) {
   if (strategy.when.empty()) return std::nullopt;
-  const Slot when = evaluate_now(strategy.when, knowledge);
+  const Slot when = evaluate_when(strategy, knowledge);
   if (when.known && when.b) return std::nullopt;
   return Invalid{strategy.adaptations.front().component,
                  when.known ? "its WHEN condition is false" : "its WHEN condition is unknown"};
@@ -326,9 +329,15 @@ std::optional<Invalid> obstacle_to_part(const Strategy& strategy, std::size_t pl
   if (std::string missing = missing_for(adaptation, knowledge); !missing.empty())
     return Invalid{adaptation.component, std::move(missing), true};
   if (is_done_step(place, strategy, knowledge)) return std::nullopt;
+  const std::string& name = knowledge.rules[adaptation.component].name;
   const std::string reason = obstacle(adaptation, knowledge);
-  if (reason.empty()) return std::nullopt;
-  return Invalid{adaptation.component, knowledge.rules[adaptation.component].name + " " + reason};
+  if (!reason.empty()) return Invalid{adaptation.component, name + " " + reason};
+  // A last resort never waits for an answer. The request is valid again with the next one.
+  const bool needs_answer = sends_request(adaptation) && !starts_member(adaptation, knowledge) &&
+                            !strategy.is_last_resort;
+  if (needs_answer && owes_answers(adaptation.component, knowledge))
+    return Invalid{adaptation.component, "does not answer", true};
+  return std::nullopt;
 }
 
 // Why it cannot be carried out now, or is pointless.

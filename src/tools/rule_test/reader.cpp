@@ -92,10 +92,8 @@ class Reader {
     const bool is_course =
         keyword == "TOPIC" || keyword == "SIGNAL" || keyword == "LEVEL" || keyword == "PARAMETER";
     if (is_course) {
-      for (const auto& stretch : here.courses.back().stretches) {
-        const bool is_first = first == Duration::zero() || stretch.from < first;
-        if (stretch.from > Duration::zero() && is_first) first = stretch.from;
-      }
+      const auto& stretches = here.courses.back().stretches;
+      first = stretches.empty() ? first : stretches.front().from;
     }
     moments_.push_back({keyword_, first});
   }
