@@ -202,6 +202,7 @@ TEST_F(Drill, ThatOnlyWatchesProposesThresholds) {
 TEST_F(Drill, ThatIsResumedMeasuresAllItsRuns) {
   std::ofstream(rules, std::ios::app) << "RULE CameraSilent\n  POLICIES WARNING REPORT\n"
                                          "  TRIGGER age(/managed_subsystem/rgb_camera) > 900ms\n";
+  TestProgram pictured(world, {"sunset-node", "world"});
   TestProgram camera(world, {"sunset-node", "camera"});
   TestProgram depth(world, {"sunset-node", "depth"});
   std::vector<int> values;
@@ -216,6 +217,7 @@ TEST_F(Drill, ThatIsResumedMeasuresAllItsRuns) {
     ASSERT_NE(at, std::string::npos) << output;
     values.push_back(std::atoi(output.c_str() + at + key.size()));
   }
+  EXPECT_GT(values[0], 0);
   EXPECT_GT(values[1], values[0] + values[0] / 2) << "both runs count";
 }
 

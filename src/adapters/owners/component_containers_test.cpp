@@ -118,11 +118,12 @@ int sleeper(int leader) {
 }
 
 TEST(ComponentsOfOneProcess, EndTogetherWithWhatTheSameLaunchStarted) {
-  const RuleSet rules = *check(Source("launch.rules",
-                                      "COMPONENT a NODE /a LAUNCH \"ros2 launch both all.launch.py\"\n"
-                                      "COMPONENT b NODE /b\nCOMPONENT c NODE /c\n"
-                                      "COMPONENT d NODE /d\n"))
-                             .rules;
+  const RuleSet rules =
+      *check(Source("launch.rules",
+                    "COMPONENT a NODE /a LAUNCH \"ros2 launch both all.launch.py\"\n"
+                    "COMPONENT b NODE /b\nCOMPONENT c NODE /c\n"
+                    "COMPONENT d NODE /d\n"))
+           .rules;
   ComponentContainers containers(rules);
   const int a = sleeper(0);
   const int b = sleeper(a);

@@ -138,7 +138,7 @@ class Narrowing {
           consumers.clear();
           std::size_t ill = 0;
           std::size_t well = 0;
-          // Of producers that no rule watches only the effects are seen.
+          // If no rule watches the producers, their effects tell when it began.
           const Time known = latest_onset(from);
           const Time since = known == kLongAgo ? latest_onset(to) : known;
           for (const Vertex v : to) {

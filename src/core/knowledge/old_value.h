@@ -35,7 +35,7 @@ std::vector<Assumed> without_old_values(const Program& condition, const Knowledg
 // The condition as it is now.
 Slot evaluate_now(const Program& condition, const Knowledge& knowledge);
 
-// The WHEN of the strategy as it is now. That of a last resort counts on the last value: it never waits.
+// The WHEN of the strategy as it is now. A last resort never waits, so it counts on the last value.
 // @pre it has one
 Slot evaluate_when(const Strategy& strategy, const Knowledge& knowledge);
 
