@@ -155,6 +155,7 @@ async function everyState(page, server) {
   server.anew()
   play(server, { ...kStates.warning, state: { ...kStates.warning.state, FusionSilent: kBlindStates['watching-nothing'].state.FusionSilent } })
   const titles = page.getByRole('region', { name: 'Explanation' }).getByRole('heading', { level: 2 })
+  await titles.filter({ hasText: 'SegmentationBad fails' }).waitFor() // the state before had the blind one, too
   await titles.filter({ hasText: 'FusionSilent is blind' }).waitFor()
   expect((await titles.first().innerText()).includes('SegmentationBad fails'), `this stands first: ${await titles.first().innerText()}`)
   await loads(page, server)

@@ -34,15 +34,13 @@ void CameraNode::deactivate() {
 }
 
 void CameraNode::on_frame(const msg::Image& frame) {
-  if (parameter<bool>("autofocus_needed")) {
-    nap(options().wall(kFocusingSec));
-    heartbeat().add("autofocus_needed", "True");
-  }
+  if (parameter<bool>("autofocus_needed")) nap(options().wall(kFocusingSec));
   if (parameter<bool>("perform_autofocus")) {
-    heartbeat().add("autofocus_needed", "False");
     assign("autofocus_needed", false);
     assign("perform_autofocus", false);
   }
+  // The authors' camera says it only while it is true, so that a rule cannot tell a sharp one from one that never says it.
+  heartbeat().set("autofocus_needed", parameter<bool>("autofocus_needed") ? "True" : "False");
   if (parameter<bool>("camera_driver_issue") || parameter<bool>("hardware_disconnect")) return;
 
   auto picture = rgb_of(frame);

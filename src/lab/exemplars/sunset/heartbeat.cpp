@@ -21,7 +21,8 @@ Heartbeat::Heartbeat(ros2::Node& node, ros2::Publisher<msg::DiagnosticArray> pub
       publisher_(std::move(publisher)),
       timer_(node.context().executor(), period, [this] { beat(); }) {}
 
-void Heartbeat::add(std::string key, std::string value) {
+void Heartbeat::set(std::string key, std::string value) {
+  std::erase_if(values_, [&](const msg::KeyValue& each) { return each.key == key; });
   values_.push_back({std::move(key), std::move(value)});
 }
 

@@ -1,5 +1,5 @@
 // A node's heartbeat on /diagnostics: one status, its hardware id the name of the node, carrying
-// the key-values that were added since the last one.
+// the keys that were set since the last one.
 //
 // The level is always OK: SUNSET's nodes do not notice their faults.
 #pragma once
@@ -21,7 +21,7 @@ class Heartbeat {
   // Beats until it is destroyed. The node outlives it.
   static Expected<std::unique_ptr<Heartbeat>> create(ros2::Node& node, Duration period);
 
-  void add(std::string key, std::string value);
+  void set(std::string key, std::string value);
 
  private:
   Heartbeat(ros2::Node& node, ros2::Publisher<ros2::msg::DiagnosticArray> publisher,

@@ -49,7 +49,7 @@ void SegmentationNode::on_fused(const FusedMessage& fused) {
   const auto depth = depth_of(fused.depth);
   if (!rgb || !depth || !fit_together(*rgb, *depth)) return;
   const Image<Distribution> probabilities = classifier_->probabilities(*rgb, *depth);
-  heartbeat().add("entropy", std::to_string(entropy(probabilities)));
+  heartbeat().set("entropy", std::to_string(entropy(probabilities)));
   publisher_->publish(to_message(most_likely(probabilities), fused.header));
 }
 
