@@ -172,7 +172,9 @@ TEST(RcaCase, PutsTheQuestionsOfAdvisersToTheRobot) {
   const std::size_t cause = made->truth.causes[0].fault.component;
   ASSERT_FALSE(made->events.empty());
   EXPECT_EQ(made->events[0].kind, CaseEventKind::kAnswered);
-  EXPECT_NE(made->events[0].component, cause);
+  EXPECT_TRUE(std::ranges::any_of(made->events, [&](const CaseEvent& event) {
+    return event.component != cause;
+  })) << "suppliers are asked, too";
   const auto& repairs = made->advice.at("bayes").repairs;
   ASSERT_FALSE(repairs.empty());
   EXPECT_EQ(repairs[0].component, cause);
