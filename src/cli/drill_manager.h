@@ -19,9 +19,9 @@ namespace culprit::cli {
 
 class DrillManager {
  public:
-  // `arguments` as of culprit; its output goes to `log`. `note` is called once as soon as it is a process, so that a drill
-  // that is killed while it starts leaves no culprit that the next drill does not know. Waits until it answers, 60 s at
-  // most. Errors: it cannot be started, has ended, or does not answer (its last line says why), or that of `note`.
+  // `arguments` as of culprit; its output goes to `log`. Calls `note` once it is a process, and then waits until it answers,
+  // 60 s at most: if the drill is killed meanwhile, the next drill knows the process. Errors: it cannot be started, has
+  // ended, or does not answer (its last line says why), or that of `note`.
   using Note = std::function<Expected<void>(const drill::ProcessId&)>;
   static Expected<std::unique_ptr<DrillManager>> start(const std::vector<std::string>& arguments,
                                                        const std::filesystem::path& log,
