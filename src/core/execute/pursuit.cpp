@@ -105,11 +105,12 @@ std::string why(const Reply& reply) {
 
 }  // namespace
 
-Pursuit::Pursuit(Goal goal, ComponentId component, Time now)
+Pursuit::Pursuit(Goal goal, ComponentId component, Time now, bool is_last_resort)
     : goal_(std::move(goal)),
       component_(component),
       begun_(now),
       deadline_(later(now, patience(goal_))),
+      is_last_resort_(is_last_resort),
       held_until_(later(now, grace(goal_))),
       loads_until_(later(now, loading(goal_))),
       answered_(now) {}
@@ -158,7 +159,7 @@ bool Pursuit::is_lost(const Knowledge& knowledge) const {
   const bool is_of_process =
       std::holds_alternative<GoneGoal>(goal_) || std::holds_alternative<PresentGoal>(goal_);
   const ComponentState& state = knowledge.components[component_];
-  return !is_of_process && state.alive == false;
+  return !is_of_process && state.alive == false && !(is_last_resort_ && state.may_still_obey());
 }
 
 // A node that ends politely answers nothing while it does so. Only one that had not answered before
@@ -200,6 +201,9 @@ std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Tim
     seen_ = {{}, Outcome::kDone, *parameter->present, ""};
     step_ = Step::kDecide;
   }
+  if (step_ == Step::kLook && knowledge.components[component_].alive == false) {
+    if (auto request = change_unseen(knowledge, now)) return request;
+  }
   if (step_ == Step::kLook) {
     const auto look = look_for(goal_);
     step_ = look ? Step::kLooking : Step::kDecide;
@@ -233,6 +237,7 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
     return give_up("its process runs, but it does not answer");
   }
   if (did_not_come(*seen_)) {
+    if (auto request = change_unseen(knowledge, now)) return request;
     // Before the change: no node is there to change, unless it is still coming up. After it: the
     // answer may just be late.
     const bool may_come =
@@ -427,6 +432,25 @@ std::optional<Pursuit::Request> Pursuit::start_again(const PresentGoal& goal, st
 std::optional<Pursuit::Request> Pursuit::wait_until(Time at) {
   wake_ = at;
   step_ = Step::kPausing;
+  return std::nullopt;
+}
+
+// The first change of a last resort, without what the component is now. It cannot be added to what is not known.
+std::optional<Pursuit::Request> Pursuit::change_unseen(const Knowledge& knowledge, Time now) {
+  if (!is_last_resort_ || has_changed_anything() ||
+      !knowledge.components[component_].may_still_obey())
+    return std::nullopt;
+  if (const auto* parameter = std::get_if<ParameterGoal>(&goal_)) {
+    if (parameter->kind != ParameterGoal::Kind::kSet) return std::nullopt;
+    wanted_ = parameter->value;
+    return change(SetParameter{parameter->name, *wanted_}, now);
+  }
+  if (const auto* lifecycle = std::get_if<LifecycleGoal>(&goal_)) {
+    if (lifecycle->target != Lifecycle::kInactive) return std::nullopt;
+    asked_for_ = Lifecycle::kInactive;
+    return change(ChangeLifecycle{Transition::kDeactivate}, now);
+  }
+  if (const auto* mode = std::get_if<ModeGoal>(&goal_)) return change(ChangeMode{mode->mode}, now);
   return std::nullopt;
 }
 

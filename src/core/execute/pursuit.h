@@ -23,7 +23,9 @@ class Pursuit {
 
   static constexpr Duration kPause = std::chrono::milliseconds(100);  // between two looks
 
-  Pursuit(Goal goal, ComponentId component, Time now);
+  // `is_last_resort`: the request is sent although its component hangs, is stopped, or does not answer when it
+  // is looked at. It obeys if it goes on.
+  Pursuit(Goal goal, ComponentId component, Time now, bool is_last_resort = false);
 
   // The next request, if one is due. `knowledge` answers for processes and the graph.
   // @pre is_under_way()
@@ -92,6 +94,7 @@ class Pursuit {
 
   bool is_hung(const Knowledge& knowledge, Time now) const;
   bool would_fight(const Knowledge& knowledge) const;
+  std::optional<Request> change_unseen(const Knowledge& knowledge, Time now);
   std::optional<Request> change(Request request, Time now);
   std::optional<Request> look_again(Time now);
   std::optional<Request> reach(std::string remark = "");
@@ -115,6 +118,7 @@ class Pursuit {
   std::vector<Request> sent_;    // changes
   std::optional<Value> wanted_;  // ParameterGoal, once the present value is known
   std::string remark_;
+  bool is_last_resort_ = false;
   bool met_rival_ = false;
   bool took_too_long_ = false;
   bool owed_answer_ = false;  // GoneGoal: its answer was overdue when it was asked to end

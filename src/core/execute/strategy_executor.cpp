@@ -272,7 +272,8 @@ bool StrategyExecutor::next_goal(Run& run, Time now) {
         run.started = std::min(run.started, now);
         present->tries_until = later(run.started, knowledge_.rules[adaptation.component].ready);
       }
-      run.pursuit.emplace(goal, adaptation.component, now);
+      run.pursuit.emplace(goal, adaptation.component, now,
+                          knowledge_.rules[run.strategy].is_last_resort);
       return true;
     }
     write_.events.tell(now, AdaptationDone{run.strategy, run.adaptation, run.remark});

@@ -112,6 +112,9 @@ struct ComponentState {
   // Its process runs, or is somewhere else, and it does nothing more.
   bool hangs() const { return in_graph && process == ProcessState::kRunning && alive == false; }
 
+  // Though it answers nothing, it may take up a request when it goes on.
+  bool may_still_obey() const { return in_graph && process != ProcessState::kGone; }
+
   // It does nothing that a deactivation would end: it is dead or hangs, or is known not to be active.
   bool is_at_rest() const {
     return alive == false || (alive == true && (lifecycle == Lifecycle::kInactive ||

@@ -337,6 +337,17 @@ TEST_P(LastResort, IsTriedAgainInANewProcessAfterAllAttempts) {
   EXPECT_TRUE(stands_still(robot)) << transcript(robot);
 }
 
+// It may go on at any moment, and obeys then.
+TEST_P(LastResort, IsAskedOfAComponentThatHangs) {
+  TestRobot robot = driving(loc_lost());
+  robot.stop("base");
+  robot.run_for(3s);
+  robot["loc"].fault = "a person";
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.was_asked("base: set max_speed")) << transcript(robot);
+  EXPECT_EQ(robot.count("held back"), 0u) << transcript(robot);
+}
+
 // It is said that the safe stop cannot be done, and it is done as soon as it can be.
 TEST_P(LastResort, WaitsForItsComponentAndSaysSo) {
   TestRobot robot = driving(loc_lost());

@@ -71,7 +71,8 @@ bool uses_already(const Adaptation& change, const Knowledge& knowledge) {
 }
 
 // Why `adaptation` is invalid; empty if it is not.
-std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
+std::string obstacle(const Adaptation& adaptation, bool is_of_last_resort,
+                     const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
   const bool is_alive = state.alive.value_or(false);
   const Component& component = knowledge.rules[adaptation.component];
@@ -88,7 +89,7 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
     default:
       break;
   }
-  if (!is_alive) return "is not alive";
+  if (!is_alive && !(is_of_last_resort && state.may_still_obey())) return "is not alive";
   if (is_left_alone(adaptation, knowledge)) return "is set back by something else";
   switch (adaptation.type) {
     case AdaptationType::kActivate:
@@ -330,7 +331,7 @@ std::optional<Invalid> obstacle_to_part(const Strategy& strategy, std::size_t pl
     return Invalid{adaptation.component, std::move(missing), true};
   if (is_done_step(place, strategy, knowledge)) return std::nullopt;
   const std::string& name = knowledge.rules[adaptation.component].name;
-  const std::string reason = obstacle(adaptation, knowledge);
+  const std::string reason = obstacle(adaptation, strategy.is_last_resort, knowledge);
   if (!reason.empty()) return Invalid{adaptation.component, name + " " + reason};
   // A last resort never waits for an answer. The request is valid again with the next one.
   const bool needs_answer = sends_request(adaptation) && !starts_member(adaptation, knowledge) &&
@@ -351,8 +352,8 @@ std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& 
   }
   if (changes_anything) return std::nullopt;
   const Adaptation& first = strategy.adaptations.front();
-  return Invalid{first.component,
-                 knowledge.rules[first.component].name + " " + obstacle(first, knowledge)};
+  return Invalid{first.component, knowledge.rules[first.component].name + " " +
+                                      obstacle(first, strategy.is_last_resort, knowledge)};
 }
 
 }  // namespace
