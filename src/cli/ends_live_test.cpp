@@ -323,5 +323,30 @@ TEST_F(EndsHealed, WhatRunsOnIsNamedAtTheEndAndEndedOnRequest) {
   EXPECT_TRUE(goes(all.other));
 }
 
+// `--launch` is a person's wish, too, and the later one.
+TEST_F(EndsHealed, WhatAPersonEndedAndLaunchesAgainStaysUp) {
+  const std::string rules = rule("a", "alive(a) == false") + rule("b", "alive(b) == false");
+  auto first = start(rules, {"--launch"});
+  for (const char* name : {"a", "b"})
+    ASSERT_TRUE(first->prints(std::string(name) + " is there (process ")) << first->output();
+  for (const Time end = later(live_now(), TestProgram::kPatience);
+       live_now() < end && said_by({"status"}).find("Started by culprit: b") == std::string::npos;)
+    std::this_thread::sleep_for(50ms);
+  said_by({"end-started"});
+  ASSERT_TRUE(first->prints("a and b stay down")) << first->output();
+  for (const char* name : {"a", "b"}) ASSERT_TRUE(goes(pid_in(first->output(), name)));
+  first->signal(SIGTERM);
+  first->wait();
+  const auto next = start(rules, {"--launch"});
+  for (const char* name : {"a", "b"})
+    ASSERT_TRUE(next->prints(std::string(name) + " is there (process ")) << next->output();
+  std::this_thread::sleep_for(3s);  // that nothing happens takes time
+  for (const char* name : {"a", "b"})
+    EXPECT_FALSE(is_gone(pid_in(next->output(), name))) << next->output();
+  EXPECT_THAT(said_by({"status"}), Not(HasSubstr("Stays down")));
+  said_by({"end-started"});
+  for (const char* name : {"a", "b"}) EXPECT_TRUE(goes(pid_in(next->output(), name)));
+}
+
 }  // namespace
 }  // namespace culprit::cli

@@ -328,6 +328,12 @@ Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start,
   std::vector<ComponentId> missing;
   std::vector<ComponentId> started;
   for (const ComponentId c : in_order(rules)) {
+    if (keeper.stay_down.contains(c)) {
+      if (keeper.starts_missing && !starting.is_there(c) && rules[c].can_start())
+        listener.on_remark("culprit: " + rules[c].name +
+                           " is not started: it stays down until `culprit revive`\n");
+      continue;
+    }
     const auto left = keeper.left.find(rules[c].name);
     if (left != keeper.left.end() && keeper.runs(c)) {
       listener.on_remark("bringing up " + rules[c].name +

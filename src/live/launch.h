@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,8 @@ struct LaunchKeeper {
   // Whether culprit, or one before it, started the component, and it runs.
   std::function<bool(ComponentId)> runs = [](ComponentId) { return false; };
   std::function<void(const Unfinished&)> keep = [](const Unfinished&) {};
-  History past{};  // how components came up before (CameUp)
+  History past{};                     // how components came up before (CameUp)
+  std::set<ComponentId> stay_down{};  // a person ended them: neither started nor brought up
 };
 
 // For the manager to begin with.

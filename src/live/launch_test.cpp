@@ -174,6 +174,18 @@ TEST_F(Launching, BringsUpWhatStandsStillProducersFirst) {
   EXPECT_EQ(how.joining, 2s);
 }
 
+TEST_F(Launching, LeavesDownWhatStaysDown) {
+  keeper.stay_down = {ComponentId(1u)};  // the lidar
+  keeper.left = {{"lidar", true}};
+  keeper.runs = [](ComponentId) { return true; };  // it is being ended
+  launch_all();
+  EXPECT_THAT(robot.started, ElementsAre("planner"));
+  EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
+  EXPECT_EQ(launched.parts.size(), 1u);
+  EXPECT_THAT(remarks.text,
+              HasSubstr("culprit: lidar is not started: it stays down until `culprit revive`"));
+}
+
 TEST_F(Launching, LeavesANodeAloneThatActivatesItself) {
   robot.nodes["lidar"].activates_itself_after = 1900ms;  // less than its start took
   launch_all();

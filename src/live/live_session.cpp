@@ -1,6 +1,7 @@
 #include "live/live_session.h"
 
 #include <algorithm>
+#include <set>
 #include <unistd.h>
 
 #include <fmt/core.h>
@@ -162,6 +163,33 @@ History waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time f
   }
   add_what_stays_down(knowledge, next, waiting);
   return waiting;
+}
+
+// The components that a person ended, and that came up no more since.
+std::set<ComponentId> that_stay_down(const History& past) {
+  std::set<ComponentId> all;
+  for (const Event& event : past) {
+    if (const auto* down = std::get_if<StaysDown>(&event.what))
+      all.insert(down->components.begin(), down->components.end());
+  }
+  return all;
+}
+
+// A person ended them before, and launches them now.
+void forget_that_stay_down(const std::vector<KnownRobot::Part>& launched, const RuleSet& rules,
+                           History& past) {
+  for (Event& event : past) {
+    auto* down = std::get_if<StaysDown>(&event.what);
+    if (down == nullptr) continue;
+    std::erase_if(down->components, [&](ComponentId component) {
+      return std::ranges::find(launched, rules[component].name, &KnownRobot::Part::component) !=
+             launched.end();
+    });
+  }
+  std::erase_if(past, [](const Event& event) {
+    const auto* down = std::get_if<StaysDown>(&event.what);
+    return down != nullptr && down->components.empty();
+  });
 }
 
 // In the order in which it happened.
@@ -332,8 +360,13 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
     const auto start = [&](CommandId command, ComponentId component) {
       robot_->start(command, component);
     };
+    // A culprit that succeeds another one, or is restarted after a crash, was not started to bring back what a
+    // person ended.
+    if (frame_.told_inheritance || beginning.ended_unexpectedly)
+      keeper.stay_down = that_stay_down(beginning.past);
     Launched launched = launch(*robot_, rules_, start, frame_.listener, stop, {}, keeper);
     seen = std::move(launched.seen);
+    forget_that_stay_down(launched.parts, rules_, beginning.past);
     add(beginning.known_robot, {std::move(launched.parts), {}});
     add(beginning.past, launched.past);
   }

@@ -335,6 +335,21 @@ TEST_F(KillSwitch, OutlivesAJumpOfTheClock) {
   EXPECT_EQ(run.keeper.orders().silences.size(), 1u);
 }
 
+// After a crash something restarts culprit, and no person: what one ended stays down, also with --launch.
+TEST_F(KillSwitch, KnowsWhetherTheLastRunWasAskedToEnd) {
+  const auto ended_unexpectedly = [&] {
+    return begin_journal(path, rules, {live_now(), kWall}).ended_unexpectedly;
+  };
+  EXPECT_FALSE(ended_unexpectedly()) << "there was none";
+  { const Run crashed(path, rules); }
+  EXPECT_TRUE(ended_unexpectedly());
+  {
+    Run stopped(path, rules);
+    stopped.write(journal::kind::kEnd, {{"ending", "stopped"}}, kWall);
+  }
+  EXPECT_FALSE(ended_unexpectedly());
+}
+
 TEST_F(KillSwitch, IsKnownFromTheRowsOfAnOlderCulprit) {
   {
     auto writer = journal::Writer::open(path, {});

@@ -90,6 +90,8 @@ std::optional<Recovery> take_over(const journal::Reader& reader,
     return std::nullopt;
   }
   tell(*recovery, rules, beginning.findings);
+  beginning.ended_unexpectedly =
+      recovery->had_run && !recovery->was_stopped && !recovery->is_other_robot();
   beginning.past = recovery->past;
   beginning.known_robot = recovery->known_robot;
   beginning.last_rules = recovery->rules_text;

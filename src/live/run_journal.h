@@ -25,6 +25,7 @@ struct RunBeginning {
   journal::StandingOrders orders;
   bool are_orders_kept = false;       // they stand in their file just so
   bool is_of_another = false;         // another culprit writes the journal, and the orders
+  bool ended_unexpectedly = false;    // the last run, in this boot of the machine
   std::vector<std::string> findings;  // for the user, one line each
 };
 
