@@ -31,6 +31,27 @@ TEST(StartOf, IsWhatItTakesToStartItAgain) {
   EXPECT_THAT(started->environment, testing::Contains("ROS_DOMAIN_ID=42"));
 }
 
+// The interpreter of a virtual environment is a link, and finds its packages by the path of the link.
+TEST(StartOf, NamesTheLinkByWhichAProgramWasStarted) {
+  const test::TestFolder folder;
+  const std::filesystem::path link = folder.path() / "bin" / "python3";
+  std::filesystem::create_directory(link.parent_path());
+  std::filesystem::create_symlink("/bin/sleep", link);
+  for (const char* name : {"python3", "bin/python3"}) {
+    Program program;
+    program.arguments = {name, "60"};
+    program.environment = {"PATH=relative:" + link.parent_path().native() + ":/usr/bin"};
+    program.folder = folder.path();
+    program.log = folder.path() / "log";
+    const auto pid = spawn(program);
+    ASSERT_TRUE(pid) << pid.error();
+    const auto started = start_of(*pid);
+    end(*pid);
+    ASSERT_TRUE(started);
+    EXPECT_EQ(started->command[0], link) << name;
+  }
+}
+
 TEST(StartOf, AProgramThatIsGoneCannotBeStartedAgain) {
   const test::TestFolder folder;
   const std::filesystem::path copy = folder.path() / "node";
