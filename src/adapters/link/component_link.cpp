@@ -111,9 +111,13 @@ void ComponentLink::service_seen(const GraphEndpoint& seen) {
   if (is_called && !offer.hash.empty()) types_.find(offer, [](const Expected<MessageLibrary*>&) {});
   if (service == node_ + "/change_state") {
     watch_transitions();
-    read_lifecycle(kJoining, Told::kAlways, Haste::kNow);
+    asking_state_.begin();
+    read_first_state(Haste::kNow);
   }
   if (service == node_ + "/get_parameters") {
+    asking_values_.begin();
+    asking_time_.begin();
+    asking_anything_.begin();
     read_parameters();
     note_that_it_answers();
   }
@@ -209,21 +213,38 @@ bool ComponentLink::has_lifecycle() {
 }
 
 void ComponentLink::check_lifecycle() {
-  if (has_lifecycle()) read_lifecycle(kProbe, Told::kIfNew, Haste::kSoon);
-}
-
-void ComponentLink::read_lifecycle(Duration patience, Told told, Haste haste) {
-  ServiceClient* client = lifecycle_reader();
+  ServiceClient* client = has_lifecycle() ? lifecycle_reader() : nullptr;
   if (client == nullptr) return;
   client->call(
-      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, patience,
-      [this, told](const CallResult& result) {
-        if (result.outcome != CallOutcome::kAnswered) return;
-        inbox_.put(Probed{component_, true});
-        const auto response = decode<srv::GetState::Response>(result.reply);
-        if (response) tell(to_lifecycle(response->current_state.id), told);
+      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kProbe,
+      [this](const CallResult& result) { on_lifecycle(result, Told::kIfNew); }, Haste::kSoon);
+}
+
+void ComponentLink::ask_again() {
+  if (asking_state_.is_due()) read_first_state(Haste::kSoon);
+  if (asking_values_.is_due()) read_parameters();
+  if (asking_time_.is_due()) ask_time_source(then_of_time_);
+  if (asking_anything_.is_due()) note_that_it_answers();
+}
+
+void ComponentLink::read_first_state(Haste haste) {
+  ServiceClient* client = lifecycle_reader();
+  if (client == nullptr) return;
+  asking_state_.asks();
+  client->call(
+      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kJoining,
+      [this](const CallResult& result) {
+        asking_state_.ends(result);
+        on_lifecycle(result, Told::kAlways);
       },
       haste);
+}
+
+void ComponentLink::on_lifecycle(const CallResult& result, Told told) {
+  if (result.outcome != CallOutcome::kAnswered) return;
+  inbox_.put(Probed{component_, true});
+  const auto response = decode<srv::GetState::Response>(result.reply);
+  if (response) tell(to_lifecycle(response->current_state.id), told);
 }
 
 void ComponentLink::tell(Lifecycle state, Told told) {
@@ -309,8 +330,10 @@ void ComponentLink::read_parameters() {
   for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
     if (rules_.parameters[p].component != component_) continue;
     // One by one: a name that is not declared would leave all of them unanswered.
+    asking_values_.asks();
     client->call(encode(srv::GetParameters::Request{{rules_.parameters[p].name}}),
                  Repeat::kUntilAnswered, kJoining, [this, p](const CallResult& result) {
+                   asking_values_.ends(result);
                    if (result.outcome != CallOutcome::kAnswered) return;
                    const auto response = decode<srv::GetParameters::Response>(result.reply);
                    if (!response) return;
@@ -329,8 +352,11 @@ void ComponentLink::read_parameters() {
 void ComponentLink::ask_time_source(std::function<void(bool)> then) {
   ServiceClient* client = parameter_reader();
   if (client == nullptr) return;
+  then_of_time_ = std::move(then);
+  asking_time_.asks();
   client->call(encode(srv::GetParameters::Request{{"use_sim_time"}}), Repeat::kUntilAnswered,
-               kJoining, [then = std::move(then)](const CallResult& result) {
+               kJoining, [this, then = then_of_time_](const CallResult& result) {
+                 asking_time_.ends(result);
                  if (result.outcome != CallOutcome::kAnswered) return;
                  const auto response = decode<srv::GetParameters::Response>(result.reply);
                  if (response && response->values.size() == 1) then(response->values[0].bool_value);
@@ -339,9 +365,12 @@ void ComponentLink::ask_time_source(std::function<void(bool)> then) {
 
 // One that answered once, and ceases to, hangs.
 void ComponentLink::note_that_it_answers() {
-  read_anything(kJoining, Haste::kSoon, [this](const CallResult& result) {
+  const auto note = [this](const CallResult& result) {
+    asking_anything_.ends(result);
     if (result.outcome == CallOutcome::kAnswered) inbox_.put(Probed{component_, true});
-  });
+  };
+  asking_anything_.asks();
+  if (!read_anything(kJoining, Haste::kSoon, note)) asking_anything_.ends({});
 }
 
 void ComponentLink::check_parameters() {

@@ -80,9 +80,13 @@ class ComponentLink {
   // Asks a node that lacks a parameter of the rules which ones it has: one of those may be meant.
   void check_parameters();
 
-  // Asks the node once whether its time is the simulated one (use_sim_time), for kJoining at most. `then`
-  // is called with the answer, on any thread.
+  // Asks the node whether its time is the simulated one (use_sim_time). `then` is called with the answer, on any
+  // thread. On the executor's thread.
   void ask_time_source(std::function<void(bool is_simulated)> then);
+
+  // Asks again what the node was asked when it was discovered, and has not answered: while it loads (a model, slow
+  // imports), it may answer nothing. For Asking::kMost times after that. On the executor's thread.
+  void ask_again();
 
   void execute(const Command& command);
 
@@ -121,8 +125,29 @@ class ComponentLink {
   // The cheap read. `then` is called with its result; not at all if no client could be made.
   bool read_anything(Duration patience, Haste haste, std::function<void(const CallResult&)> then);
   bool has_lifecycle();
+  // A question to a node that was just discovered, until it is answered.
+  class Asking {
+   public:
+    static constexpr int kMost = 60;  // of 5 s each
+
+    // The node was discovered: from now on it counts.
+    void begin() { left_ = kMost; }
+    void asks() { ++under_way_; }
+    void ends(const CallResult& result) {
+      if (result.outcome == CallOutcome::kTimedOut) is_open_ = true;
+      --under_way_;
+    }
+    // Once for each time that it was left unanswered.
+    bool is_due() { return under_way_ == 0 && is_open_.exchange(false) && left_-- > 0; }
+
+   private:
+    std::atomic<int> under_way_ = 0;
+    std::atomic<bool> is_open_ = false;
+    int left_ = 0;  // of the executor's thread
+  };
+  void read_first_state(Haste haste);
   enum class Told : std::uint8_t { kAlways, kIfNew };
-  void read_lifecycle(Duration patience, Told told, Haste haste);
+  void on_lifecycle(const CallResult& result, Told told);
   void tell(Lifecycle state, Told told);
   // The content of a transition event.
   struct Claim {
@@ -167,6 +192,8 @@ class ComponentLink {
   std::atomic<int> pid_ = 0;
   std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
   std::atomic<bool> misses_parameter_ = false;  // found since it was asked for its names
+  Asking asking_state_, asking_values_, asking_time_, asking_anything_;
+  std::function<void(bool)> then_of_time_;  // of the executor's thread
 
   Mutex mutex_;  // never held while calling
   std::optional<GuidPrefix> mode_holder_ CULPRIT_GUARDED_BY(mutex_);

@@ -497,6 +497,9 @@ void Link::probe() {
     }
   }
   other_nodes_->probe();
+  for (std::size_t c = 0; c < rules_.components.size(); ++c) {
+    if (ComponentLink* link = link_of(ComponentId(c))) link->ask_again();
+  }
   for (const Parameter& parameter : rules_.parameters) {
     if (ComponentLink* link = link_of(parameter.component)) link->check_parameters();
   }

@@ -1220,6 +1220,31 @@ TEST(Link, FollowsTheClockOfNodesThatUseSimulatedTimeAndSaysSo) {
   EXPECT_EQ(linked.link->doubt(), "the simulated time stands still");
 }
 
+// It loads a model before it spins, for longer than one request waits.
+TEST(Link, AsksANodeThatLoadsUntilItAnswers) {
+  const TestDomain domain;
+  Robot robot(domain);
+  use_simulated_time(robot);
+  ClockNode clock(robot);
+  std::promise<void> loaded;
+  TaskGroup tasks(robot.context->executor());
+  tasks.post([&] { loaded.get_future().wait(); });
+  Linked linked(
+      domain, {},
+      "COMPONENT robot NODE /robot LAUNCH \"robot\"\nRULE R\nPOLICIES ERROR\n"
+      "TRIGGER parameter(robot, gain) > 2\nSTRATEGY s 50 10\nADAPTATION robot redeploy 5\n");
+  EXPECT_TRUE(linked.sees("/robot"));
+  std::this_thread::sleep_for(6s);
+  EXPECT_FALSE(linked.has_seen<ParameterRead>([](const ParameterRead&) { return true; }));
+  loaded.set_value();
+  EXPECT_TRUE(
+      linked.wait<ParameterRead>([](const ParameterRead& r) { return r.value == Value(1.5); }));
+  EXPECT_TRUE(linked.wait<LifecycleRead>(
+      [](const LifecycleRead& r) { return r.state == Lifecycle::kUnconfigured; }));
+  EXPECT_TRUE(linked.wait<Probed>([](const Probed& p) { return p.answered; }));
+  EXPECT_TRUE(is_followed(linked));
+}
+
 TEST(Link, HoldsOnlyTheNodesThatUseSimulatedTimeBesideOthers) {
   const TestDomain domain;
   Robot robot(domain);
