@@ -145,6 +145,12 @@ Expected<void> Link::join() {
     helper->on_trouble = [this](std::string text) { inbox_.put(LinkTrouble{std::move(text)}); };
     options_.participant.helper = std::move(helper);
   }
+  // Another computer may be off, or the network not up yet.
+  options_.participant.on_missing_peer = [this](const std::string& why) {
+    inbox_.put(
+        LinkTrouble{why + "; culprit goes without it. Correct ROS_STATIC_PEERS, or restart culprit "
+                          "once that computer is reachable"});
+  };
   auto context = Context::create(executor_, options_.participant, graph_options());
   if (!context) return Error{context.error()};
   context_ = std::move(*context);

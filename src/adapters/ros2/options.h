@@ -36,6 +36,9 @@ struct ParticipantOptions {
   std::string enclave = "/";
   std::vector<std::string>
       peers;  // further IPv4 addresses or host names to announce to, where multicast does not reach
+  // Called for each peer whose name cannot be resolved, with the reason, before the participant is made without it. Empty:
+  // that is an error.
+  std::function<void(const std::string& why)> on_missing_peer{};
   // Not empty: everything that these know is discovered (a super client), and nothing else.
   std::vector<DiscoveryServer> servers{};
   // The form in which ros_discovery_info is written. Nothing: the form of the first peer.

@@ -352,7 +352,11 @@ class DdsParticipant final : public Participant::Impl {
     std::vector<std::string> peers;
     for (const std::string& peer : options.peers) {
       auto address = resolve_peer(peer);
-      if (!address) return Error{address.error()};
+      if (!address && !options.on_missing_peer) return Error{address.error()};
+      if (!address) {
+        options.on_missing_peer(address.error());
+        continue;
+      }
       peers.push_back(std::move(*address));
     }
     for (DiscoveryServer& server : options.servers) {

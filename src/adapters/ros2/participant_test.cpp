@@ -597,6 +597,16 @@ TEST(Participant, AnUnknownPeerIsAnError) {
   EXPECT_FALSE(Participant::create(options, [](DiscoveryEvent) {}));
 }
 
+TEST(Participant, GoesWithoutAnUnknownPeerWhereThatIsReported) {
+  const TestDomain domain;
+  ParticipantOptions options = domain.options();
+  options.peers = {"no such host", "127.0.0.1"};
+  std::string told;
+  options.on_missing_peer = [&](const std::string& why) { told += why; };
+  EXPECT_TRUE(Participant::create(options, [](DiscoveryEvent) {}));
+  EXPECT_THAT(told, testing::HasSubstr("the peer 'no such host' cannot be found"));
+}
+
 TEST(Participant, TheSourcesOfAnotherAreItsSockets) {
   const TestDomain domain;
   LiveContext watcher(domain.options()), robot(domain.options());
