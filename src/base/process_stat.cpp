@@ -21,8 +21,8 @@ std::optional<ProcessStat> process_stat(const std::string& process) {
   std::int64_t user_ticks = 0;
   std::int64_t system_ticks = 0;
   std::uint64_t resident_pages = 0;
-  rest >> stat.state >> stat.parent >> stat.group >> stat.session;
-  skip(2);                               // to field 9
+  rest >> stat.state >> stat.parent >> stat.group >> stat.session >> stat.terminal >>
+      stat.foreground;
   constexpr std::uint64_t kExiting = 4;  // PF_EXITING
   std::uint64_t flags = 0;
   rest >> flags;

@@ -14,6 +14,8 @@ struct ProcessStat {
   int parent = 0;
   int group = 0;
   int session = 0;
+  int terminal = 0;         // of its session; 0: none
+  int foreground = 0;       // the process group that the terminal's input goes to; -1: none
   bool is_exiting = false;  // the kernel takes it apart; its children may be another's already
   Duration processor{};     // that it has used, of all its threads
   std::uint64_t threads = 0;

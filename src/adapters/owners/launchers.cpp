@@ -27,7 +27,7 @@ void Launchers::note_process(ComponentId component, int pid, bool is_others) {
       launchers_.erase(component);
       return;
     case Origin::What::kKnown:
-      return hold(component, origin.pid);
+      return hold(component, origin.pid, pid);
   }
 }
 
@@ -40,9 +40,10 @@ void Launchers::note_end(ComponentId component, int pid) {
 }
 
 // Another one of the component may run in place of a process of that launch.
-void Launchers::hold(ComponentId component, int launcher) {
+void Launchers::hold(ComponentId component, int launcher, int process) {
   Launcher& held = launchers_[component] = Launcher{launcher, started_at(launcher)};
   held.held = FileDescriptor(static_cast<int>(syscall(SYS_pidfd_open, launcher, 0)));
+  held.process = process;
   look_at_children_of(held);
 }
 
@@ -55,6 +56,8 @@ void Launchers::look_at_children_of(Launcher& launcher) {
   if (!launcher.held || !goes_on(launcher)) return;
   std::vector<int> children = children_of(launcher.pid);
   if (goes_on(launcher)) launcher.children = std::move(children);
+  if (const auto is_job = is_foreground_job(launcher.process, launcher.pid))
+    launcher.is_in_foreground = *is_job;
 }
 
 bool Launchers::goes_on(const Launcher& launcher) {
@@ -92,6 +95,12 @@ bool Launchers::restarts(ComponentId component) const {
   if (!rules_[component].is_respawned) return false;
   const auto launcher = launchers_.find(component);
   return launcher == launchers_.end() || goes_on(launcher->second);
+}
+
+bool Launchers::ran_in_foreground(ComponentId component, int pid) const {
+  const auto launcher = launchers_.find(component);
+  return launcher != launchers_.end() && launcher->second.process == pid &&
+         launcher->second.is_in_foreground;
 }
 
 bool Launchers::is_stopped(ComponentId component) const {

@@ -37,6 +37,9 @@ class Launchers {
   // Whether it, and not culprit, starts the component again. Also if it is unknown: two processes of one name would be
   // worse than none.
   bool restarts(ComponentId component) const;
+  // Whether its process `pid`, which culprit did not start, ran as a job in the foreground of a terminal when it was looked
+  // last. If such a job ends in an orderly way, a person ended it: the shell goes on.
+  bool ran_in_foreground(ComponentId component, int pid) const;
   // By SIGSTOP.
   bool is_stopped(ComponentId component) const;
 
@@ -49,12 +52,14 @@ class Launchers {
   struct Launcher {
     int pid = 0;  // 0: it has ended, or it was a supervisor, since that had ended
     std::optional<Time> began{};
-    std::vector<int> children{};  // when it was looked last
-    bool ran_others = false;      // when the component's process had ended
-    FileDescriptor held{};        // until its end, which is reported
+    std::vector<int> children{};    // when it was looked last
+    bool ran_others = false;        // when the component's process had ended
+    FileDescriptor held{};          // until its end, which is reported
+    int process = 0;                // of the component, that it started
+    bool is_in_foreground = false;  // that process, when it was looked last
   };
 
-  void hold(ComponentId component, int launcher);
+  void hold(ComponentId component, int launcher, int process);
   static bool goes_on(const Launcher& launcher);
   static void look_at_children_of(Launcher& launcher);
 

@@ -199,6 +199,14 @@ Origin origin_of(int pid) {
   return {};
 }
 
+std::optional<bool> is_foreground_job(int pid, int shell) {
+  const ProcessStat job = family_of(pid);
+  if (job.state == 'X' || job.state == 'Z' || job.is_exiting) return std::nullopt;
+  const ProcessStat its_shell = family_of(shell);
+  const bool is_in_foreground = job.terminal != 0 && job.group == job.foreground;
+  return is_in_foreground && job.session == its_shell.session && job.group != its_shell.group;
+}
+
 std::optional<SystemdUnit> unit_started_as(int pid) {
   const int parent = parent_of(pid).value_or(0);
   if (command_name(parent) != "systemd") return std::nullopt;

@@ -38,6 +38,11 @@ struct Origin {
 };
 Origin origin_of(int pid);
 
+// Whether the shell `shell` runs it as a job in the foreground of its terminal: Ctrl-C there ends it. Not so for what
+// another program starts in its own process group, as `ros2 launch` does. Nothing: it has ended, and the shell has the
+// foreground.
+std::optional<bool> is_foreground_job(int pid, int shell);
+
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);
 

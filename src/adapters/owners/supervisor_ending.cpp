@@ -241,9 +241,13 @@ void Supervisor::end_member(Member& member) {
     for (const FileDescriptor& each : member.tree) send_signal(each, SIGKILL);
     if (!member.variable.empty()) end_what_is_left(member.component, member.variable);
   }
+  const bool is_of_person = end.cause == Cause::kWish &&
+                            launchers_.ran_in_foreground(member.component, member.process.pid());
   ports_.keep(member.process.pid());  // before anybody can order a successor
   inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), end.remark,
-                         is_ours ? Cause::kWish : end.cause});
+                         is_ours        ? Cause::kWish
+                         : is_of_person ? Cause::kOrder
+                                        : end.cause});
   ended_[member.component] = {member.process.pid(), member.number};
   tell_what_stays(member);
   if (member.process.relation() == Relation::kAdopted)

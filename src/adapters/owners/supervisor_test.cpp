@@ -6,6 +6,7 @@
 #include <linux/capability.h>
 #include <optional>
 #include <poll.h>
+#include <pty.h>
 #include <set>
 #include <signal.h>
 #include <sys/file.h>
@@ -369,6 +370,69 @@ TEST(Supervisor, TellsHowALauncherEndedAndWhetherItRanOthers) {
     EXPECT_FALSE(seen.has_crashed);
     EXPECT_EQ(seen.ran_others, runs_others);
     waitpid(*launcher, nullptr, 0);
+  }
+}
+
+// A terminal with a shell that runs `sleep 1000` as a job, in the foreground or not.
+class Terminal {
+ public:
+  explicit Terminal(bool in_foreground) {
+    shell_ = forkpty(&keyboard_, nullptr, nullptr, nullptr);
+    if (shell_ != 0) return;
+    const pid_t job = fork();
+    if (job == 0) {
+      setpgid(0, 0);
+      signal(SIGINT, SIG_DFL);  // a test in the background inherits that it is ignored
+      signal(SIGTTOU, SIG_IGN);
+      if (in_foreground) tcsetpgrp(STDIN_FILENO, getpid());
+      execlp("sleep", "sleep", "1000", nullptr);
+    }
+    while (true) pause();  // it reaps nothing: how the job ended can be read
+  }
+  ~Terminal() {
+    if (shell_ <= 0) return;
+    if (job_ != 0) kill(job_, SIGKILL);
+    end(shell_);
+    waitpid(shell_, nullptr, 0);
+    close(keyboard_);
+  }
+  bool is_open() const { return shell_ > 0; }
+  int job() {
+    job_ = a_child_of(shell_);
+    EXPECT_TRUE(becomes(job_, "sleep"));
+    return job_;
+  }
+  void press_ctrl_c() const { EXPECT_EQ(write(keyboard_, "\x03", 1), 1); }
+
+ private:
+  int keyboard_ = -1;
+  pid_t shell_ = -1;
+  pid_t job_ = 0;
+};
+
+// As `ros2 run`: the shell goes on, and nothing of a launch ends with it.
+TEST(Supervisor, CtrlCInTheTerminalOfANodeIsAPersonsOrder) {
+  Terminal terminal(true);
+  if (!terminal.is_open()) GTEST_SKIP() << "this system has no terminals";
+  Supervised c("sleep 1000");
+  c.supervisor->adopt(ComponentId(0), terminal.job(), live_now());
+  EXPECT_FALSE(c.launcher().has_ended);
+  terminal.press_ctrl_c();
+  const ProcessSeen ended = c.state(ProcessState::kGone);
+  EXPECT_EQ(ended.cause, Cause::kOrder) << ended.remark;
+}
+
+TEST(Supervisor, AJobThatCrashesOrRunsInTheBackgroundWasNotEndedByCtrlC) {
+  for (const bool in_foreground : {true, false}) {
+    Terminal terminal(in_foreground);
+    if (!terminal.is_open()) GTEST_SKIP() << "this system has no terminals";
+    Supervised c("sleep 1000");
+    const int job = terminal.job();
+    c.supervisor->adopt(ComponentId(0), job, live_now());
+    EXPECT_FALSE(c.launcher().has_ended);
+    kill(job, in_foreground ? SIGSEGV : SIGINT);
+    const ProcessSeen ended = c.state(ProcessState::kGone);
+    EXPECT_EQ(ended.cause, in_foreground ? Cause::kFault : Cause::kWish) << ended.remark;
   }
 }
 

@@ -88,6 +88,23 @@ TEST(ALaunch, OfFiveThatSomebodyEndsIsNotStartedAgain) {
   EXPECT_TRUE(robot.works("b")) << transcript(robot);
 }
 
+// Ctrl-C on `ros2 run` in a terminal: its shell goes on, and no launch ends.
+TEST(ALaunch, OfAShellThatGoesOnIsNotBroughtBackAgainstAPersonsWish) {
+  TestRobot robot = launch_of_five();
+  robot["c"].end();
+  robot.tell(NodeVanished{"/c"});
+  robot.tell(ProcessSeen{robot.id("c"), ProcessState::kGone, robot["c"].pid, "exit code 0",
+                         Cause::kOrder});
+  robot.run_for(1min);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("c stays down: "), 1u) << transcript(robot);
+  robot.start_by_hand("c");
+  robot.run_for(Departures::kBack + 5s);
+  robot.kill("c");
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("c")) << transcript(robot);
+}
+
 // e outlives its launch (nohup, a launcher of its own). From then on it is repaired as any other.
 TEST(ALaunch, DoesNotTakeAlongWhatOutlivesIt) {
   for (const bool is_killed : {false, true}) {

@@ -112,7 +112,8 @@ enum class Cause : std::uint8_t {
            // and the program that started it was not
   kWish,   // exit code 0, SIGINT, SIGTERM or SIGHUP; culprit ended it; it was stopped with its
            // launcher
-  kOrder   // its owner ended it in an orderly way, as systemctl stop and docker stop do
+  kOrder   // its owner ended it in an orderly way, as systemctl stop and docker stop do, and
+           // Ctrl-C in the terminal of its shell
 };
 
 // The state of a component's process, as the operating system reports it.
