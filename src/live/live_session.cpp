@@ -568,8 +568,9 @@ void LiveSession::keep_down_what_ended_unseen(RunBeginning& beginning) const {
   for (const Event& event : beginning.past) {
     const auto* found = std::get_if<ComponentFound>(&event.what);
     if (found == nullptr || rules_[found->component].has_owner()) continue;
-    const owners::PlaceHeld place = owners::noted_launch(frame_.options.robot.supervisor.log_folder,
-                                                         rules_[found->component].name);
+    const owners::PlaceHeld place = owners::noted_launch(
+        frame_.options.robot.supervisor.log_folder,
+        fmt::format("{}/{}/{}", domain_, rules_.robot, rules_[found->component].name));
     if (place.launcher == 0 || place.goes_on) continue;
     ended[place.launcher].insert(found->component);
     const auto began = owners::started_at(found->pid);

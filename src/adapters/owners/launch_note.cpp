@@ -1,13 +1,22 @@
 #include "owners/launch_note.h"
 
+#include <algorithm>
 #include <fstream>
 #include <system_error>
 
 namespace culprit::owners {
 namespace {
 
-std::filesystem::path note_of(const std::filesystem::path& folder, const std::string& component) {
+// "0-sunset-camera.launcher": a component's name has no hyphen.
+std::filesystem::path note_of(const std::filesystem::path& folder, std::string component) {
+  std::ranges::replace(component, '/', '-');
   return folder / (component + ".launcher");
+}
+
+bool write_note(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::trunc);
+  out << text << '\n';
+  return static_cast<bool>(out.flush());
 }
 
 }  // namespace
@@ -17,18 +26,17 @@ void note_launch(const std::filesystem::path& folder, const std::string& compone
   std::error_code error;
   const std::filesystem::path note = note_of(folder, component);
   const std::string text = launcher == 0 ? "" : to_text(launcher);
-  if (text.empty()) {
-    std::filesystem::remove(note, error);
-    return;
-  }
-  std::filesystem::create_directories(folder, error);
   const std::filesystem::path draft = note.string() + ".new";
-  {
-    std::ofstream out(draft, std::ios::trunc);
-    out << text << '\n';
-    if (!out.flush()) return;
+  if (!text.empty()) {
+    std::filesystem::create_directories(folder, error);
+    if (write_note(draft, text)) {
+      std::filesystem::rename(draft, note, error);
+      if (!error) return;
+    }
   }
-  std::filesystem::rename(draft, note, error);
+  // Not the launcher before this one either.
+  std::filesystem::remove(note, error);
+  std::filesystem::remove(draft, error);
 }
 
 PlaceHeld noted_launch(const std::filesystem::path& folder, const std::string& component) {

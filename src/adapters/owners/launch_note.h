@@ -9,7 +9,7 @@
 
 namespace culprit::owners {
 
-// `launcher`: 0 forgets it.
+// `component`: with its robot, "0/sunset/camera" (mark.h): robots of one machine may share the folder. `launcher`: 0 forgets it.
 void note_launch(const std::filesystem::path& folder, const std::string& component, int launcher);
 
 // Launcher 0: none is noted.

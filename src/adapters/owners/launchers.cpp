@@ -18,7 +18,8 @@ void Launchers::note_process(ComponentId component, int pid, bool is_others) {
   Origin origin = is_others ? origin_of(pid) : Origin{Origin::What::kEnded, 0};
   if (place.goes_on) origin = {Origin::What::kKnown, place.launcher};
   const bool is_known = origin.what == Origin::What::kKnown;
-  if (is_others) note_launch(notes_, rules_[component].name, is_known ? origin.pid : 0);
+  if (is_others)
+    note_launch(programs_.log_folder, programs_.mark(component), is_known ? origin.pid : 0);
   switch (origin.what) {
     case Origin::What::kEnded:
       launchers_[component] = Launcher{};
@@ -92,7 +93,7 @@ int Launchers::running(ComponentId component) const {
 }
 
 bool Launchers::restarts(ComponentId component) const {
-  if (!rules_[component].is_respawned) return false;
+  if (!programs_.rules[component].is_respawned) return false;
   const auto launcher = launchers_.find(component);
   return launcher == launchers_.end() || goes_on(launcher->second);
 }

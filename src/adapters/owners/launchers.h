@@ -2,7 +2,6 @@
 // one it is, whether it runs, and, once, that it has exited (LauncherSeen).
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <poll.h>
@@ -11,6 +10,7 @@
 #include "base/time.h"
 #include "inbox/inbox.h"
 #include "language/rule_set.h"
+#include "owners/component_programs.h"
 #include "owners/file_descriptor.h"
 
 namespace culprit::owners {
@@ -18,9 +18,8 @@ namespace culprit::owners {
 // Not thread-safe: the supervisor's mutex guards it.
 class Launchers {
  public:
-  // `notes`: the folder of what culprit remembers of launchers (launch_note.h). `rules` and `inbox` must outlive it.
-  Launchers(const RuleSet& rules, std::filesystem::path notes, Inbox& inbox)
-      : rules_(rules), notes_(std::move(notes)), inbox_(inbox) {}
+  // Notes the launchers in the folder of the logs (launch_note.h). `programs` and `inbox` must outlive it.
+  Launchers(const ComponentPrograms& programs, Inbox& inbox) : programs_(programs), inbox_(inbox) {}
 
   // The component's process `pid` runs. `is_others`: culprit did not start it.
   void note_process(ComponentId component, int pid, bool is_others);
@@ -63,8 +62,7 @@ class Launchers {
   static bool goes_on(const Launcher& launcher);
   static void look_at_children_of(Launcher& launcher);
 
-  const RuleSet& rules_;
-  const std::filesystem::path notes_;
+  const ComponentPrograms& programs_;
   Inbox& inbox_;
   std::map<ComponentId, Launcher> launchers_;
 };

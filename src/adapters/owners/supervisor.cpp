@@ -31,7 +31,7 @@ Supervisor::Supervisor(const RuleSet& rules, Options options, Inbox& inbox)
                 std::move(options.robot),
                 options.lifetime,
                 std::move(options.environments)},
-      launchers_(rules, programs_.log_folder, inbox) {
+      launchers_(programs_, inbox) {
   for (std::size_t c = 0; c < rules_.components.size(); ++c) take_over(ComponentId(c));
   {
     const MutexLock lock(mutex_);
@@ -102,7 +102,7 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
   }
   end_what_is_left(component, "");
   const int launcher = launchers_.running(component);
-  note_launch(programs_.log_folder, rules_[component].name, launcher);
+  note_launch(programs_.log_folder, programs_.mark(component), launcher);
   Program program = programs_.program(component, launcher);
   program.kept_until_it_runs = lock->get();
   auto launch = Launch::begin(program, Until::kItRuns);
@@ -213,7 +213,7 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
   if (relation != Relation::kAdopted && is_marked) member.awaited = live_now();
   const PlaceHeld marked = is_marked ? place_held_by(pid) : PlaceHeld{};
   // A mark stays, and the note goes once the process is to go on without the launch.
-  const PlaceHeld noted = noted_launch(programs_.log_folder, rules_[component].name);
+  const PlaceHeld noted = noted_launch(programs_.log_folder, programs_.mark(component));
   const PlaceHeld place = noted.launcher == marked.launcher ? marked : PlaceHeld{};
   if (is_marked) {
     const auto began = started_at(pid);

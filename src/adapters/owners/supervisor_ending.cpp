@@ -199,7 +199,7 @@ void Supervisor::end_with_launch(ComponentId component) {
 
 void Supervisor::stands_in_for_none(ComponentId component) {
   const MutexLock lock(mutex_);
-  note_launch(programs_.log_folder, rules_[component].name, 0);
+  note_launch(programs_.log_folder, programs_.mark(component), 0);
 }
 
 bool Supervisor::was_started(const Member& member) const {

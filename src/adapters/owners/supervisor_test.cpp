@@ -24,6 +24,7 @@
 #include "base/test_folder.h"
 #include "language/checker.h"
 #include "owners/bounded_log.h"
+#include "owners/launch_note.h"
 #include "owners/mark.h"
 #include "owners/proc.h"
 #include "owners/spawn.h"
@@ -370,6 +371,27 @@ TEST(Supervisor, TellsHowALauncherEndedAndWhetherItRanOthers) {
     EXPECT_FALSE(seen.has_crashed);
     EXPECT_EQ(seen.ran_others, runs_others);
     waitpid(*launcher, nullptr, 0);
+  }
+}
+
+// Two simulated robots of one user have the same state folder.
+TEST(Supervisor, RobotsThatShareAFolderNoteTheirLaunchersApart) {
+  Supervised one("sleep 1000", "0/one");
+  Supervised two("sleep 1000", "0/two");
+  ASSERT_EQ(one.folder(), two.folder());
+  std::vector<int> launchers;
+  for (Supervised* each : {&one, &two}) {
+    const auto launcher = spawn({{"sh", "-c", "sleep 1000 & wait"}, {}, "/dev/null"});
+    ASSERT_TRUE(launcher);
+    launchers.push_back(*launcher);
+    each->supervisor->adopt(ComponentId(0), a_child_of(*launcher), live_now());
+  }
+  EXPECT_EQ(noted_launch(one.folder(), "0/one/c").launcher, launchers[0]);
+  EXPECT_EQ(noted_launch(two.folder(), "0/two/c").launcher, launchers[1]);
+  for (const int launcher : launchers) {
+    kill(a_child_of(launcher), SIGKILL);
+    kill(launcher, SIGKILL);
+    waitpid(launcher, nullptr, 0);
   }
 }
 
