@@ -118,25 +118,27 @@ Expected<DrillRules> rules_for(const DrillOptions& options, const RuleSet& rules
 // A drill breaks a component far more often than a robot should: the limits on repairs would hide what rules do.
 std::vector<std::string> manager_arguments(const DrillOptions& options, const std::string& rules,
                                            const std::filesystem::path& journal) {
-  std::vector<std::string> all{"run",
-                               rules,
-                               "--journal",
-                               journal.string(),
-                               "--state-dir",
-                               options.state().string(),
-                               "--improvise",
-                               "--intensity",
-                               "none",
-                               "--intensity-kind",
-                               "none",
-                               "--intensity-component",
-                               "none",
-                               "--restarts",
-                               "none",
-                               "--backoff",
-                               "0",
-                               "--healthy",
-                               "2"};  // shorter than the robot is well before each fault
+  std::vector<std::string> all{
+      "run",
+      rules,
+      "--journal",
+      journal.string(),
+      "--state-dir",
+      options.state().string(),
+      "--improvise",
+      "--revive",  // the drill crashes nodes, and on_exit=Shutdown() ends the launch
+      "--intensity",
+      "none",
+      "--intensity-kind",
+      "none",
+      "--intensity-component",
+      "none",
+      "--restarts",
+      "none",
+      "--backoff",
+      "0",
+      "--healthy",
+      "2"};  // shorter than the robot is well before each fault
   if (options.launches) all.emplace_back("--launch");
   if (options.monitor_seconds > 0) all.emplace_back("--dry-run");
   return all;

@@ -89,6 +89,19 @@ TEST_F(Drill, MeasuresWhatTheRulesMakeOfEachFaultAndUndoesTheOthers) {
   EXPECT_EQ(replay.wait(), 0) << replay.output();
 }
 
+// As with on_exit=Shutdown(): the drill itself is why the launch ends.
+TEST_F(Drill, HealsALaunchThatEndsWithTheNodeThatItKilled) {
+  const std::string node = (own_folder() / "sunset-node").string();
+  const TestProgram launcher(world,
+                             {"sh", "-c",
+                              node + " camera & camera=$!; " + node +
+                                  " depth & depth=$!; wait $camera; kill $depth; wait; exit 0"});
+  TestProgram program(world, {"culprit", "drill", rules, "--yes", "--state-dir", state(), "--only",
+                              "camera", "--kinds", "kill"});
+  EXPECT_EQ(program.wait(120s), 0) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("kill camera: noticed after "));
+}
+
 TEST_F(Drill, WithoutAYesInjectsNothing) {
   TestProgram program(world, {"culprit", "drill", rules, "--state-dir", state()});
   EXPECT_EQ(program.wait(), 1);
