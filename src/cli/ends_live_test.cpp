@@ -323,6 +323,25 @@ TEST_F(EndsHealed, WhatRunsOnIsNamedAtTheEndAndEndedOnRequest) {
   EXPECT_TRUE(goes(all.other));
 }
 
+// Its component may be down: the robot does not go on as it was.
+TEST_F(EndsHealed, ACulpritThatEndsInTheMiddleOfARepairSaysSo) {
+  const TestProgram first(world, {"ros2_peer_node", domain, "/a"});
+  std::string rules = rule("a", "alive(a) == false");
+  rules.replace(rules.find(node("a")), node("a").size(), "sleep 600");  // never makes the node
+  const auto culprit = start(rules);
+  ASSERT_TRUE(culprit->prints("a is there (process ")) << culprit->output();
+  std::this_thread::sleep_for(1s);
+  kill(pid_in(culprit->output(), "a"), SIGKILL);
+  for (const Time end = later(live_now(), TestProgram::kPatience);
+       live_now() < end && said_by({"status"}).find("Started by culprit: a") == std::string::npos;)
+    std::this_thread::sleep_for(50ms);
+  culprit->signal(SIGTERM);
+  culprit->wait();
+  EXPECT_THAT(culprit->output(), HasSubstr("culprit: it ends in the middle of a_redeploy for "
+                                           "a_silent; the next `culprit run` finishes it"));
+  said_by({"end-started"});
+}
+
 // `--launch` is a person's wish, too, and the later one.
 TEST_F(EndsHealed, WhatAPersonEndedAndLaunchesAgainStaysUp) {
   const std::string rules = rule("a", "alive(a) == false") + rule("b", "alive(b) == false");

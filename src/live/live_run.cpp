@@ -238,6 +238,10 @@ Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) 
   }
   systemd_.stopping();
   close(desk);
+  for (const std::string& each : session_->unfinished())
+    frame_.listener.on_remark("culprit: it ends in the middle of " + each +
+                              (frame_.records ? "; the next `culprit run` finishes it\n"
+                                              : ", and keeps no journal to finish it later\n"));
   session_->say_lease();
   session_->end();
   session_.reset();

@@ -665,6 +665,17 @@ bool LiveSession::is_adapting() const {
   return false;
 }
 
+std::vector<std::string> LiveSession::unfinished() const {
+  std::vector<std::string> all;
+  for (const RuleId id : manager_->knowledge().states.active()) {
+    const auto& attempt = manager_->knowledge().states[id].attempt;
+    const bool has_changed =
+        attempt && attempt->stage == Attempt::Stage::kAdapting && attempt->first_change != kNever;
+    if (has_changed) all.push_back(rules_[attempt->strategy].name + " for " + rules_[id].name);
+  }
+  return all;
+}
+
 LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string occasion) {
   end();
   const Time sees = later(robot_->now(), frame_.options.discovery);

@@ -124,6 +124,8 @@ class LiveSession {
   std::optional<Time> deaf_since() const { return robot_->deaf_since(); }
   // Whether a strategy is under way.
   bool is_adapting() const;
+  // The repairs that have changed something and are not finished, for people: "camera_redeploy for CameraGone".
+  std::vector<std::string> unfinished() const;
 
  private:
   LiveSession(const Frame& frame, LoadedRules rules);
