@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/text_file.h"
+#include "ros2/options.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {
@@ -53,6 +54,19 @@ TEST_F(Init, BesideARunningCulpritNothingIsDraftedOfCulprit) {
   EXPECT_THAT(*text, Not(HasSubstr("level(culprit"))) << *text;
   EXPECT_THAT(*text, Not(HasSubstr("NODE /culprit")));
   EXPECT_THAT(*text, Not(HasSubstr("# /culprit"))) << "left out";
+}
+
+// culprit may run elsewhere than where the draft was made, as a service does.
+TEST_F(Init, ACommandWithARelativePathKeepsItsFolder) {
+  const std::string kept = std::filesystem::relative(world.write("kept", "")).string();
+  const std::string domain = std::to_string(ros2::options_from_environment()->domain);
+  const TestProgram node(world, {"ros2_peer_node", domain, "--keeps-if", kept, "/camera"});
+  TestProgram init(world, {"culprit", "init", "--for", "5", "-o", file});
+  EXPECT_EQ(init.wait(), 0) << init.output();
+  const auto text = read_text(file);
+  ASSERT_TRUE(text);
+  EXPECT_THAT(*text, HasSubstr("--keeps-if " + kept + " /camera\""));
+  EXPECT_THAT(*text, HasSubstr(" CWD \"" + std::filesystem::current_path().string() + "\""));
 }
 
 TEST_F(Init, AnUpdateTakesALaunchDump) {

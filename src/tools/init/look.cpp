@@ -1,6 +1,7 @@
 #include "init/look.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <set>
 #include <thread>
@@ -32,10 +33,22 @@ bool is_nobodys(std::string_view variable) {
   return starts_with_any(variable, {"PWD=", "OLDPWD=", "SHLVL=", "_=", "TERM=", "CULPRIT_"});
 }
 
+// Whether an argument names a file or folder below that one: then the command means something else anywhere else, and a
+// service runs in another folder than a person who drafts.
+bool depends_on(const std::string& folder, const std::vector<std::string>& command) {
+  return std::ranges::any_of(command, [&](const std::string& word) {
+    std::error_code error;
+    const bool is_relative = !word.empty() && !word.starts_with('/') && !word.starts_with('-');
+    return is_relative && std::filesystem::exists(std::filesystem::path(folder) / word, error);
+  });
+}
+
 Start start_as_written(const owners::Started& started) {
   Start start;
   start.command = started.command;
-  if (started.folder != std::filesystem::current_path()) start.folder = started.folder;
+  if (started.folder != std::filesystem::current_path() ||
+      depends_on(started.folder, started.command))
+    start.folder = started.folder;
   for (const std::string& variable : started.environment) {
     const std::size_t equals = variable.find('=');
     if (equals == std::string::npos || is_nobodys(variable)) continue;
