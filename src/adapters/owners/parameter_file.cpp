@@ -1,7 +1,10 @@
 #include "owners/parameter_file.h"
 
 #include <array>
+#include <cctype>
+#include <cerrno>
 #include <charconv>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -63,14 +66,13 @@ std::optional<bool> truth(const std::string& text) {
   return std::nullopt;
 }
 
-template <class Number>
-std::optional<Number> number_in(const std::string& text) {
-  const bool has_plus = text.starts_with('+');
-  const char* begin = text.data() + (has_plus ? 1 : 0);
-  const char* end = text.data() + text.size();
-  Number value{};
-  const auto [last, error] = std::from_chars(begin, end, value);
-  if (error != std::errc() || last != end) return std::nullopt;
+// As rcl reads it: "0x29" is hexadecimal, and "010" is 8.
+std::optional<std::int64_t> whole_in(const std::string& text) {
+  const bool begins = !text.empty() && std::isspace(static_cast<unsigned char>(text[0])) == 0;
+  char* last = nullptr;
+  errno = 0;
+  const std::int64_t value = std::strtoll(text.c_str(), &last, 0);
+  if (!begins || errno != 0 || last != text.c_str() + text.size()) return std::nullopt;
   return value;
 }
 
@@ -79,7 +81,12 @@ std::optional<double> real_in(const std::string& text) {
   if (text == "-.inf") return -std::numeric_limits<double>::infinity();
   if (text == ".nan") return std::numeric_limits<double>::quiet_NaN();
   if (text.find_first_of("0123456789") == std::string::npos) return std::nullopt;
-  return number_in<double>(text);
+  const bool has_plus = text.starts_with('+');
+  const char* end = text.data() + text.size();
+  double value{};
+  const auto [last, error] = std::from_chars(text.data() + (has_plus ? 1 : 0), end, value);
+  if (error != std::errc() || last != end) return std::nullopt;
+  return value;
 }
 
 ParameterValue scalar(const YAML::Node& node) {
@@ -93,7 +100,7 @@ ParameterValue scalar(const YAML::Node& node) {
       value.bool_value = *is;
       return value;
     }
-    if (const auto whole = number_in<std::int64_t>(text)) {
+    if (const auto whole = whole_in(text)) {
       value.type = static_cast<std::uint8_t>(ParameterType::kInteger);
       value.integer_value = *whole;
       return value;

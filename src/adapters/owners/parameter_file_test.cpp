@@ -58,6 +58,23 @@ TEST(ParameterFile, KnowsTypesAsRosDoes) {
   EXPECT_EQ((*read)[9].name, "j.k.l");
 }
 
+// Addresses on buses are seldom written otherwise. A node refuses a text for a number, and so is not loaded.
+TEST(ParameterFile, ReadsWholeNumbersOfOtherBasesAsRosDoes) {
+  const auto read = parameters_in(
+      "/**:\n  ros__parameters: {a: 0x29, b: -0x1F, c: 010, d: '0x29', e: 0x, f: [0x601, 2], g: "
+      "+5}\n",
+      "/n");
+  ASSERT_TRUE(read) << read.error();
+  ASSERT_EQ(read->size(), 7u);
+  EXPECT_EQ((*read)[0].value.integer_value, 0x29);
+  EXPECT_EQ((*read)[1].value.integer_value, -0x1F);
+  EXPECT_EQ((*read)[2].value.integer_value, 8);
+  EXPECT_EQ((*read)[3].value.string_value, "0x29");
+  EXPECT_EQ((*read)[4].value.string_value, "0x");
+  EXPECT_EQ((*read)[5].value.integer_array_value, (std::vector<std::int64_t>{0x601, 2}));
+  EXPECT_EQ((*read)[6].value.integer_value, 5);
+}
+
 TEST(ParameterFile, LaterLinesWin) {
   const auto read =
       parameters_in("/**:\n  ros__parameters: {rate: 1}\nn:\n  ros__parameters: {rate: 2}\n", "/n");
