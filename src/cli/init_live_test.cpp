@@ -1,4 +1,5 @@
 // `init` where there is nothing to draft. Drafts are tested in first_hour_live_test.cpp.
+#include <cstdlib>
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -67,6 +68,21 @@ TEST_F(Init, ACommandWithARelativePathKeepsItsFolder) {
   ASSERT_TRUE(text);
   EXPECT_THAT(*text, HasSubstr("--keeps-if " + kept + " /camera\""));
   EXPECT_THAT(*text, HasSubstr(" CWD \"" + std::filesystem::current_path().string() + "\""));
+}
+
+// Each run has another one, and an update would replace every component.
+TEST_F(Init, TheLogFolderOfOneLaunchIsNoPartOfAStart) {
+  setenv("ROS_LOG_DIR", "/root/.ros/log/2026-11-30-20-03-11-512345-rover-4711", 1);
+  setenv("ROS_HOME", "/data/ros", 1);
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  unsetenv("ROS_LOG_DIR");
+  unsetenv("ROS_HOME");
+  TestProgram init(world, {"culprit", "init", "--for", "5", "-o", file});
+  EXPECT_EQ(init.wait(), 0) << init.output();
+  const auto text = read_text(file);
+  ASSERT_TRUE(text);
+  EXPECT_THAT(*text, HasSubstr("ROS_HOME=/data/ros"));
+  EXPECT_THAT(*text, Not(HasSubstr("ROS_LOG_DIR")));
 }
 
 TEST_F(Init, AnUpdateTakesALaunchDump) {

@@ -1,9 +1,11 @@
 #include "init/look.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <iterator>
 #include <set>
+#include <string_view>
 #include <thread>
 
 #include "base/environment.h"
@@ -43,6 +45,19 @@ bool depends_on(const std::string& folder, const std::vector<std::string>& comma
   });
 }
 
+// `ros2 launch` makes a folder for each run, "2026-11-30-20-03-11-512345-rover-4711", and names it to its nodes. It is no
+// part of their start.
+bool is_log_folder_of_one_run(std::string_view variable) {
+  constexpr std::string_view kForm = "0000-00-00-00-00-00-";
+  if (!variable.starts_with("ROS_LOG_DIR=")) return false;
+  while (variable.ends_with('/')) variable.remove_suffix(1);
+  std::string_view run = variable.substr(variable.find_last_of("/=") + 1);
+  run = run.substr(0, kForm.size());
+  return std::ranges::equal(run, kForm, [](unsigned char c, char form) {
+    return form == '0' ? std::isdigit(c) != 0 : c == static_cast<unsigned char>(form);
+  });
+}
+
 Start start_as_written(const owners::Started& started) {
   Start start;
   start.command = started.command;
@@ -51,7 +66,8 @@ Start start_as_written(const owners::Started& started) {
     start.folder = started.folder;
   for (const std::string& variable : started.environment) {
     const std::size_t equals = variable.find('=');
-    if (equals == std::string::npos || is_nobodys(variable)) continue;
+    if (equals == std::string::npos || is_nobodys(variable) || is_log_folder_of_one_run(variable))
+      continue;
     const std::string name = variable.substr(0, equals);
     if (environment(name.c_str()) == variable.substr(equals + 1)) continue;
     if (is_of_ros_or_dds(variable))
