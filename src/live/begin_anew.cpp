@@ -23,7 +23,11 @@ std::vector<std::string> own_arguments() {
 }  // namespace
 
 std::vector<std::string> arguments_of_next(std::vector<std::string> own) {
-  std::erase(own, "--launch");
+  std::erase_if(own, [](const std::string& each) {
+    return each == "--launch" || each.starts_with("--launch=");
+  });
+  // It may also stand in the environment or in a file.
+  own.emplace_back("--launch=false");
   return own;
 }
 

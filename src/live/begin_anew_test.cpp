@@ -6,8 +6,12 @@ namespace culprit::live {
 namespace {
 
 TEST(BeginAnew, DoesTheSameAgainButStartsNothing) {
-  EXPECT_EQ(arguments_of_next({"culprit", "run", "a.rules", "--launch", "--web"}),
-            (std::vector<std::string>{"culprit", "run", "a.rules", "--web"}));
+  const std::vector<std::string> next{"culprit", "run", "a.rules", "--web", "--launch=false"};
+  EXPECT_EQ(arguments_of_next({"culprit", "run", "a.rules", "--launch", "--web"}), next);
+  EXPECT_EQ(arguments_of_next({"culprit", "run", "a.rules", "--launch=true", "--web"}), next);
+  EXPECT_EQ(arguments_of_next({"culprit", "run", "a.rules", "--web"}), next)
+      << "it may stand in culprit.toml";
+  EXPECT_EQ(arguments_of_next(next), next);
 }
 
 }  // namespace
