@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -41,17 +42,18 @@ bool can_be_changed(const std::string& path) {
 
 bool is_flag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
 
-// The line of the file that gives `key`; 0: none does.
+// The last line of the file that gives `key`; 0: none does.
 int line_of_key(const std::string& text, const std::string& key) {
+  int found = 0;
   std::istringstream lines(text);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
     const auto begin = line.find_first_not_of(" \t\"'");
     if (begin == std::string::npos || line.compare(begin, key.size(), key) != 0) continue;
     const auto end = line.find_first_not_of(" \t\"'", begin + key.size());
-    if (end == std::string::npos || line[end] == '=') return number;
+    if (end == std::string::npos || line[end] == '=') found = number;
   }
-  return 0;
+  return found;
 }
 
 struct ConfigurationFile {
@@ -64,17 +66,66 @@ struct ConfigurationFile {
   }
 };
 
+// `key` without the dashes and underscores that people write in it: "--dry_run".
+std::string as_option(std::string key) {
+  key.erase(0, std::min(key.find_first_not_of('-'), key.size()));
+  std::replace(key.begin(), key.end(), '_', '-');
+  return key;
+}
+
+// As TOML writes it.
+std::string toml_value(const std::string& value) {
+  std::string out = "\"";
+  for (const char c : value) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+// A line that has no '=': "settle: 5s", as YAML and JSON write it, or "web true".
+Error no_setting(const ConfigurationFile& file, const std::string& line,
+                 const std::vector<std::string>& known) {
+  const std::string cause = file.place(line) + "'" + printable(line) + "' is no setting; ";
+  const auto first = std::min(line.find_first_not_of("\"'"), line.size());
+  const auto end = line.find_first_of(": \t\"'", first);
+  const std::string key = as_option(line.substr(first, end - first));
+  if (std::find(known.begin(), known.end(), key) == known.end())
+    return Error{cause + "write settle = \"5s\", and # in front of a comment"};
+  const auto begin = line.find_first_not_of(": \t\"'", end);
+  std::string value = begin == std::string::npos ? "" : line.substr(begin);
+  while (!value.empty() && std::string_view(", \t\"'").find(value.back()) != std::string_view::npos)
+    value.pop_back();
+  const bool is_plain = value == "true" || value == "false";
+  return Error{cause + "write " + key + " = " + printable(is_plain ? value : toml_value(value))};
+}
+
 Error unknown_key(const ConfigurationFile& file, const std::string& key,
                   const std::vector<std::string>& known) {
-  // "settle: 5s", as YAML and JSON write it.
-  if (const auto colon = key.find(':'); colon != std::string::npos)
-    return Error{file.place(key) + "'" + printable(key) + "' is no setting; write settle = \"5s\""};
-  std::string plain = key;
-  std::replace(plain.begin(), plain.end(), '_', '-');
+  if (key.find_first_of(": \t") != std::string::npos) return no_setting(file, key, known);
+  const std::string plain = as_option(key);
   const bool is_known = std::find(known.begin(), known.end(), plain) != known.end();
   const std::string near = is_known ? plain : closest(plain, {known.begin(), known.end()});
-  return Error{file.place(key) + "culprit run has no option '" + printable(key) + "'" +
-               (near.empty() ? "" : "; did you mean '" + near + "'?")};
+  return Error{
+      file.place(key) + "culprit run has no option '" + printable(key) + "'; " +
+      (near.empty() ? "culprit run --print-config lists all" : "did you mean '" + near + "'?")};
+}
+
+// The first line whose text begins with a quote that is never closed; 0: none.
+int line_of_open_quote(const std::string& text) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const auto equals = line.find('=');
+    if (equals == std::string::npos || line.find('#') < equals) continue;
+    const auto begin = line.find_first_not_of(" \t", equals + 1);
+    const bool is_text = begin != std::string::npos && (line[begin] == '"' || line[begin] == '\'');
+    // A text over several lines begins with three quotes.
+    if (is_text && line.compare(begin, 3, std::string(3, line[begin])) != 0 &&
+        line.find(line[begin], begin + 1) == std::string::npos)
+      return number;
+  }
+  return 0;
 }
 
 // The words that stand for one line of the file. Errors: its value is wrong.
@@ -106,6 +157,9 @@ Expected<std::vector<std::string>> words_of_item(const ConfigurationFile& file,
 }
 
 Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, CLI::App& run) {
+  if (const int line = line_of_open_quote(file.text); line > 0)
+    return Error{fmt::format("{}:{}: this text has no closing quote; write it where the text ends",
+                             file.name, line)};
   std::istringstream text(file.text);
   std::vector<CLI::ConfigItem> items;
   try {
@@ -132,16 +186,6 @@ Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, 
     if (is_flag(*option) && !more->empty()) option->add_result("true");
   }
   return words;
-}
-
-// As TOML writes it.
-std::string toml_value(const std::string& value) {
-  std::string out = "\"";
-  for (const char c : value) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
 }
 
 std::string toml_values(const std::vector<std::string>& values) {

@@ -97,6 +97,24 @@ TEST_F(RunConfigurationFile, NamesTheLineOfAMistake) {
   EXPECT_THAT(error_of("rules = \"\"\n"), HasSubstr("rules is empty; write a value"));
 }
 
+TEST_F(RunConfigurationFile, SaysHowALineIsWritten) {
+  EXPECT_EQ(error_of("rules = \"a.rules\"\nweb: true\n"),
+            file_ + ":2: 'web: true' is no setting; write web = true");
+  EXPECT_EQ(error_of("web true\n"), file_ + ":1: 'web true' is no setting; write web = true");
+  EXPECT_EQ(error_of("--web = true\n"),
+            file_ + ":1: culprit run has no option '--web'; did you mean 'web'?");
+  EXPECT_EQ(error_of("for the lab\n"),
+            file_ +
+                ":1: 'for the lab' is no setting; write settle = \"5s\", and # in front of a "
+                "comment");
+  EXPECT_EQ(error_of("watch = true\n"),
+            file_ + ":1: culprit run has no option 'watch'; culprit run --print-config lists all");
+  EXPECT_EQ(error_of("web = true\nrules = \"a.rules\n"),
+            file_ + ":2: this text has no closing quote; write it where the text ends");
+  EXPECT_EQ(error_of("web = true\nport = 1\nweb = false\n"),
+            file_ + ":3: web is given twice; keep one");
+}
+
 TEST_F(RunConfigurationFile, MustBeThere) {
   const auto result = with_configuration({"run", "--config", folder_.path() / "none.toml"});
   ASSERT_FALSE(result);
