@@ -116,7 +116,8 @@ class AdaptationReader {
       case kSetParameter:
       case kIncreaseParameter:
       case kDecreaseParameter:
-        if (!take_name(adaptation.subject, "the parameter")) return false;
+        if (!take_name(adaptation.subject, "the parameter") || is_value_first(adaptation, s))
+          return false;
         return value(s, adaptation);
       case kChangeCommunication:
         return take_name(adaptation.subject, "the parameter that holds the topic") &&
@@ -148,6 +149,20 @@ class AdaptationReader {
         return true;
     }
     return false;
+  }
+
+  // "set_parameter 0.2 max_speed 5": reported.
+  bool is_value_first(const syntax::Adaptation& adaptation, const Scanner& s) {
+    const Name& first = adaptation.subject;
+    const Token& second = s.peek();
+    if (first.text.find_first_not_of("0123456789.") != std::string::npos ||
+        second.kind != Token::Kind::kIdentifier)
+      return false;
+    const Span span{first.span.begin, second.span.end};
+    const std::string meant = std::string(second.text) + " " + first.text;
+    return !read_.fail(Code::kSyntax, span, "the parameter stands in front of its value",
+                       "write " + std::string(keyword(adaptation.type)) + " " + meant,
+                       Edit{span, meant});
   }
 
   // "std_srvs/srv/Trigger"; a service itself may be called /lidar/srv/enable.
@@ -234,6 +249,9 @@ class AdaptationReader {
                         "ROS parameters hold no durations",
                         "write only the number, in the unit that the node expects");
     if (has_percent(s) || has_metres(s)) return false;
+    if (s.at_end())
+      return read_.fail(Code::kSyntax, next.span, "a value is missing here",
+                        both_at_the_end(adaptation));
     adaptation.value = read_.expression(s);
     if (adaptation.value && read_.is_in_number(s.peek()))
       return read_.fail_comma_in_number(s.peek());
@@ -256,7 +274,10 @@ class AdaptationReader {
     if (!adaptation.value) return "";
     if (s.peek().kind == Token::Kind::kIdentifier && !is_last_word(s))
       return "one line sets one parameter: write a line for each";
-    if (!s.at_end()) return "";
+    return s.at_end() ? both_at_the_end(adaptation) : "";
+  }
+
+  static std::string both_at_the_end(const syntax::Adaptation& adaptation) {
     const std::string word(keyword(adaptation.type));
     return "the value and the impact stand at the end: " + word + " " + adaptation.subject.text +
            (adaptation.type == syntax::AdaptationType::kSetParameter ? " true 2" : " 0.5 2");
@@ -290,6 +311,9 @@ class AdaptationReader {
           "no adaptation is written with '='",
           "write set_parameter " + std::string(word.text) + " and its value",
           Edit{{word.span.begin, sign.span.end}, "set_parameter " + std::string(word.text)});
+    if (word.kind == Token::Kind::kIdentifier && syntax::adaptation_type(s.peek().text))
+      return read_.fail(Code::kSyntax, word.span, "one line adapts one component",
+                        "write a line of its own for each component");
     if (word.kind == Token::Kind::kNumber && syntax::adaptation_type(s.peek().text))
       return read_.fail(Code::kSyntax, word.span, "the impact stands at the end of the line",
                         "write " + std::string(s.peek().text) + " in front of it");

@@ -21,7 +21,10 @@ std::string remedy_of_bare_value(const Expression& left, const std::string& name
   };
   if (is_one_of({"NAN"}))
     return "write isnan(" + (left.kind == Kind::kName ? left.name.text : "signal") + ")";
-  if (is_one_of({"NULL", "NONE", "NIL", "UNKNOWN", "UNDEFINED"}))
+  const bool is_nothing = is_one_of({"NULL", "NONE", "NIL", "UNKNOWN", "UNDEFINED"});
+  if (is_nothing && is_call_of(left, "lifecycle"))
+    return "write !alive(" + left.children[0].name.text + "), which detects that it is down";
+  if (is_nothing)
     return "no value can be compared with a missing one: age(/topic) > 1s detects that none comes";
   if (is_one_of({"YES", "ON"})) return "write true";
   if (is_one_of({"NO", "OFF"})) return "write false";

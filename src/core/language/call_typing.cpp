@@ -205,7 +205,8 @@ std::optional<Typed> CallTyper::goals(const Expression& e) {
   const auto outcome = counted_outcome(word.text);
   if (!outcome && is_window_first(e)) return std::nullopt;
   if (!outcome) {
-    const std::string near = closest(word.text, counted_outcomes());
+    const bool is_failure = word.text == "failed" || word.text == "failure";
+    const std::string near = is_failure ? "aborted" : closest(word.text, counted_outcomes());
     return typer_.fail(Code::kArguments, word.span, "no goal ends as '" + word.text + "'",
                        near.empty() ? "write aborted, canceled, succeeded or accepted"
                                     : "did you mean '" + near + "'?",
@@ -365,6 +366,10 @@ std::optional<TopicId> CallTyper::topic_argument(const Expression& e) {
     return typer_.fail(Code::kBadRosName, e.span, "'" + written + "' is no full topic name",
                        written.starts_with('$') ? "remove the '$': braces alone name a parameter"
                                                 : "write one pair of braces around a parameter");
+  if (const std::string topic = written.substr(0, written.find('.'));
+      topic != written && topic.starts_with('/') && is_component_reference(topic))
+    return typer_.fail(Code::kBadRosName, e.span, "'" + written + "' is a field, and no topic",
+                       "write " + topic + "; only a SIGNAL reads a field", Edit{e.span, topic});
   return typer_.fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is no full topic name",
                      e.name.text.starts_with('/')
                          ? remedy_of_ros_name(e.name.text)

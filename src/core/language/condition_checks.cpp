@@ -122,7 +122,8 @@ std::string meant_value(const Typed& comparison, const Input& input, const RuleS
     const bool is_case_only = std::ranges::find(states, lower) != states.end();
     const std::string near = is_case_only ? lower : closest(lower, {states.begin(), states.end()});
     if (!near.empty()) return "did you mean \"" + near + "\"?";
-    if (lower == "deactivated") return "write \"inactive\"";
+    if (lower == "deactivated" || lower == "stopped") return "write \"inactive\"";
+    if (lower == "running" || lower == "activated") return "write \"active\"";
   }
   return "";
 }

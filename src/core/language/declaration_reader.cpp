@@ -191,6 +191,9 @@ bool DeclarationReader::ignore(Scanner& s) {
     return read_.fail(Code::kSyntax, rest,
                       "expected TOPIC, not '" + std::string(source_.text(rest)) + "'",
                       "write TOPIC in front of it", Edit{{rest.begin, rest.begin}, "TOPIC "});
+  if (s.peek().text == "NODE" || s.peek().text == "COMPONENT")
+    return read_.fail(Code::kSyntax, s.peek().span, "only topics can be ignored",
+                      "write IGNORE TOPIC and the topics that carry no failure");
   if (!read_.expect_word(s, "TOPIC")) return false;
   do {
     if (s.peek().is(",")) return read_.fail_comma(s.next());
@@ -205,6 +208,9 @@ bool DeclarationReader::interlock(Scanner& s) { return condition(s, into_.interl
 bool DeclarationReader::abort(Scanner& s) { return condition(s, into_.aborts); }
 
 bool DeclarationReader::condition(Scanner& s, std::vector<syntax::Interlock>& all) {
+  if (s.at_end())
+    return read_.fail(Code::kSyntax, s.peek().span, "a condition is missing here",
+                      "write it on this line, as in speed < 0.1");
   auto condition = read_.expression(s);
   if (!condition || !read_.condition_ends(s)) return false;
   std::string text(source_.text(condition->span));
@@ -390,10 +396,12 @@ bool DeclarationReader::signal_source(Scanner& s, syntax::Signal& signal) {
   } else {
     constexpr std::string_view kRemedy =
         "write where its value comes from, as in TOPIC /battery FIELD percentage";
-    return read_.unexpected_clause(kind, {kSignalSources.begin(), kSignalSources.end()},
-                                   kind.is("/")
-                                       ? "write TOPIC in front of the topic, and FIELD behind it"
-                                       : std::string(kRemedy));
+    return read_.unexpected_clause(
+        kind, {kSignalSources.begin(), kSignalSources.end()},
+        kind.is("/")           ? "write TOPIC in front of the topic, and FIELD behind it"
+        : kind.text == "FIELD" ? "write TOPIC and the topic in front of it"
+        : kind.text == "KEY"   ? "write DIAGNOSTIC and the status in front of it"
+                               : std::string(kRemedy));
   }
   return true;
 }

@@ -134,6 +134,13 @@ class ExpressionParser {
         return wrong_operator({first.span.begin, second.span.end},
                               std::string(slip.first).append(slip.second), std::string(slip.meant));
     }
+    if (first.is("/") && second.is("*"))
+      return Diagnostic{Code::kExtraText,
+                        Severity::kError,
+                        {first.span.begin, second.span.end},
+                        "no comment begins with '/*'",
+                        "begin a comment with #",
+                        Edit{{first.span.begin, second.span.end}, "#"}};
     if (!first.is("*") || !second.is("*")) return std::nullopt;
     return Diagnostic{Code::kSyntax,
                       Severity::kError,
@@ -351,6 +358,10 @@ class ExpressionParser {
                       "unexpected '" + std::string(token.text) + "' before a condition",
                       "remove it", Edit{{token.span.begin, scanner_.position()}, ""});
         }
+        if (is_reminder(token.text))
+          return fail(Code::kPlaceholder, token.span,
+                      "'" + std::string(token.text) + "' stands for something of yours",
+                      "write the condition or the value in its place");
         e.kind = Kind::kName;
         e.name = {std::string(token.text), token.span};
         if (auto slip = call_without_parentheses(e)) return fail(std::move(*slip));
@@ -365,6 +376,11 @@ class ExpressionParser {
         break;
     }
     return value_is_missing(token);
+  }
+
+  // What people write where they mean to go on later.
+  static bool is_reminder(std::string_view word) {
+    return word == "TODO" || word == "FIXME" || word == "TBD" || word == "XXX";
   }
 
   // "500 ms", "5 Hz"
@@ -491,10 +507,27 @@ class ExpressionParser {
     e.span.end = scanner_.next().span.end;
     if (e.children.size() < function->min_arguments ||
         e.children.size() > function->max_arguments) {
+      if (auto slip = parameter_behind_dot(e)) return fail(std::move(*slip));
       return fail(Code::kArguments, e.span, "wrong number of arguments for " + e.name.text,
                   "usage: " + std::string(function->usage));
     }
     return e;
+  }
+
+  // "parameter(camera.gain)"
+  static std::optional<Diagnostic> parameter_behind_dot(const Expression& call) {
+    if (call.name.text != "parameter" || call.children.size() != 1) return std::nullopt;
+    const syntax::Name& name = call.children[0].name;
+    const auto dot = name.text.find('.');
+    if (dot == std::string::npos || !is_component_reference(name.text.substr(0, dot)))
+      return std::nullopt;
+    const std::string meant = name.text.substr(0, dot) + ", " + name.text.substr(dot + 1);
+    return Diagnostic{Code::kArguments,
+                      Severity::kError,
+                      name.span,
+                      "a component and its parameter stand apart",
+                      "write parameter(" + meant + ")",
+                      Edit{name.span, meant}};
   }
 
   static std::string meant_function(std::string_view word) {

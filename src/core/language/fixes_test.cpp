@@ -52,6 +52,9 @@ TEST(Fixes, FitHurriedDeclarations) {
   EXPECT_EQ(fixed("COMPONENT NODE lidar /lidar\n"), "COMPONENT lidar NODE /lidar\n");
   EXPECT_EQ(fixed("SIGNAL s TOPIC /t FIELD .data\n"), "SIGNAL s TOPIC /t FIELD data\n");
   EXPECT_EQ(fixed("TEMPLATE t(hz: 10)\nEND\n"), "TEMPLATE t(hz = 10)\nEND\n");
+  EXPECT_EQ(fixed("TEMPLATE t(hz 10)\nEND\n"), "TEMPLATE t(hz = 10)\nEND\n");
+  EXPECT_EQ(fixed("CONST hot = 75.0 /* degrees\n"), "CONST hot = 75.0 # degrees\n");
+  EXPECT_EQ(fixed("12: ROBOT sunset\n"), "ROBOT sunset\n");
   EXPECT_EQ(remedy("SIGNAL s TOPIC /t FIELD cells[-1]\n"), "write its number, as in ranges[0]");
   EXPECT_EQ(remedy("DEPENDENCY ON lidar fusion\n"),
             "write the component that needs the other one first: DEPENDENCY fusion ON camera");

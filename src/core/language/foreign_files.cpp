@@ -16,6 +16,7 @@ constexpr std::string_view kDraft =
     "a rule file is plain text; culprit init -o my.rules drafts one from the robot";
 
 constexpr std::string_view kTest = "a test of rules";
+constexpr std::string_view kConfiguration = "a configuration of culprit run";
 
 // The lines that have something else than a comment.
 std::vector<std::string_view> statement_lines(const Source& source) {
@@ -46,6 +47,12 @@ bool is_of_yaml(std::string_view line) {
                      });
 }
 
+// "rules = "my.rules"", which a configuration has beside other options.
+bool names_rules(std::string_view line) {
+  constexpr std::string_view kKey = "rules";
+  return line.starts_with(kKey) && trimmed(line.substr(kKey.size())).starts_with("= \"");
+}
+
 bool is_of_python(std::string_view line) {
   return line.starts_with("import ") || line.starts_with("def ") || line.starts_with("class ") ||
          (line.starts_with("from ") && line.find(" import ") != std::string_view::npos);
@@ -59,6 +66,7 @@ std::string_view language_of(const Source& source) {
   if (lines.front().starts_with("RULES ")) return kTest;
   if (std::any_of(lines.begin(), lines.end(), is_of_rules)) return "";
   if (source.text().starts_with("#!")) return "a script";
+  if (std::any_of(lines.begin(), lines.end(), names_rules)) return kConfiguration;
   const std::string_view first = lines.front();
   const bool is_word_in_brackets = first.size() > 1 && first[0] == '[' &&
                                    std::isalpha(static_cast<unsigned char>(first[1])) != 0;
@@ -79,10 +87,11 @@ std::optional<Diagnostic> foreign_language(const Source& source) {
   if (language.empty()) return std::nullopt;
   const auto begin = static_cast<std::uint32_t>(
       language == "binary" ? 0 : statement_lines(source).front().data() - source.text().data());
-  const std::string remedy(language == "JSON"
-                               ? "culprit import reads the JSON that culprit export --json wrote"
-                           : language == kTest ? "culprit test runs it"
-                                               : kDraft);
+  const std::string remedy(
+      language == "JSON"  ? "culprit import reads the JSON that culprit export --json wrote"
+      : language == kTest ? "culprit test runs it"
+      : language == kConfiguration ? "culprit run --config " + source.name() + " reads it"
+                                   : std::string(kDraft));
   return Diagnostic{Code::kBadToken,
                     Severity::kError,
                     {begin, begin + 1},

@@ -8,7 +8,7 @@
 
 namespace culprit {
 
-// One mistake, one message: leaves one error about a file that is JSON, YAML, XML, Python, a test of rules or binary,
+// One mistake, one message: leaves one error about a file that is JSON, YAML, XML, Python, a test of rules, a configuration or binary,
 // and one about a comment of several lines or a block in braces. Keeps the other `diagnostics`.
 void condense(const Source& source, std::vector<Diagnostic>& diagnostics);
 

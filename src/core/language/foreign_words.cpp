@@ -39,6 +39,7 @@ constexpr auto kForeignClauses = std::to_array<ForeignWord>({
     {"REJECTED", "REFUSED"},
     {"ERR", "ERROR"},
     {"MISSING", "absent"},
+    {"RUNNING", "active"},
     {"COMMAND", "LAUNCH"},
     {"CMD", "LAUNCH"},
     {"EXEC", "LAUNCH"},

@@ -543,6 +543,9 @@ bool LineReader::line_ends(Scanner& s, std::string_view remedy) {
   }
   if (is_in_number(token)) return fail_comma_in_number(token);
   if (token.is(",")) return fail_comma(token);
+  if (const Span sign{token.span.begin, token.span.begin + 2}; source_.text(sign) == "/*")
+    return fail(Code::kExtraText, sign, "no comment begins with '/*'", "begin a comment with #",
+                Edit{sign, "#"});
   // The scanner takes the two characters for signs.
   const std::string_view text = source_.text();
   const Span line = source_.line(source_.position(token.span.begin).line);

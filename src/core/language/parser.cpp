@@ -91,6 +91,8 @@ class Parser {
     const std::size_t complaints = read_.complaints() + 1;
     keyword_ = head.span;
     bool is_good_head = meant != nullptr;
+    const bool is_numbered = head.kind == Token::Kind::kNumber && s.peek().is(":");
+    if (meant == nullptr && is_numbered) s.next();  // "12: RULE", as it was copied from an editor
     if (meant == nullptr && (meant = known(s.peek().text)) != nullptr) {
       keyword_ = s.next().span;
       superfluous_word(head);
@@ -100,7 +102,7 @@ class Parser {
     if (has_placeholder(s)) is_good_head = false;
     if (has_colon(s)) is_good_head = false;  // it is taken, so that the line can be read
     // The expansion takes only the words as they are.
-    if (!is_good_head && is_of_reuse(meant->keyword)) return rules_.broken();
+    if (!is_good_head && is_of_reuse(meant->keyword)) return reuse_was_meant(meant->keyword);
     const Scanner behind_keyword = s;
     const bool is_good = (this->*meant->parse)(s) && read_.line_ends(s);
     // One mistake, one message: the statement is read as it was meant, so that the lines that
@@ -128,6 +130,14 @@ class Parser {
     is_unknown_ = meant == nullptr;
     if (is_unknown_ && s.peek().is("=")) declare_broken_constant(head);  // "limit = 0.5"
     return meant;
+  }
+
+  // One mistake, one message: a TEMPLATE ends where its END was meant.
+  void reuse_was_meant(std::string_view keyword) {
+    rules_.broken();
+    if (keyword != "END" || !template_) return;
+    rules_.end_rule();
+    close_template(line_.begin, behind_line());
   }
 
   static bool is_of_reuse(std::string_view keyword) {

@@ -63,6 +63,7 @@ const char* contradiction(const Adaptation& first, const Adaptation& second) {
   const bool other_configures = sets_parameter(first) || sets_parameter(second) ||
                                 first.type == kChangeMode || second.type == kChangeMode ||
                                 lifecycle || first.type == kActivate || first.type == kDeactivate;
+  if (are(kRedeploy, kRedeploy)) return "this is done already";
   if (ends_process(first) && ends_process(second))
     return "the component's process is ended already";
   if ((ends_process(first) || ends_process(second)) && other_configures) {

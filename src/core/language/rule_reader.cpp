@@ -156,6 +156,7 @@ bool RuleReader::strategy(Scanner& s) {
   if (rule.strategies.empty()) rule.strategies.reserve(2);  // as most rules have
   rule.strategies.emplace_back();
   rule.strategies.back().has_broken_adaptation = true;  // until the line is understood
+  if (is_name_last(s)) return false;
   auto name = read_.identifier(s, "the strategy's name");
   if (!name || !read_.is_one_word(s, *name)) return false;
   const auto probability =
@@ -187,6 +188,9 @@ bool RuleReader::strategy(Scanner& s) {
   std::optional<syntax::Expression> when;
   if (s.peek().text == "WHEN") {
     s.next();
+    if (s.at_end())
+      return read_.fail(Code::kSyntax, s.peek().span, "a condition is missing here",
+                        "write it behind WHEN, as in WHEN speed < 0.1");
     when = read_.expression(s);
     if (const Token& next = s.peek(); when && (next.text == "LASTRESORT" || next.text == "WITHIN"))
       return read_.fail(Code::kExtraText, next.span,
@@ -204,6 +208,22 @@ bool RuleReader::strategy(Scanner& s) {
                             within,
                             std::exchange(has_stray_adaptation_, false)};
   return true;
+}
+
+// "STRATEGY 80 10 restart": reported.
+bool RuleReader::is_name_last(const Scanner& s) {
+  Scanner ahead = s.ahead();
+  const Token first = ahead.next();
+  const Token second = ahead.next();
+  const Token name = ahead.next();
+  if (first.kind != Token::Kind::kNumber || second.kind != Token::Kind::kNumber ||
+      name.kind != Token::Kind::kIdentifier)
+    return false;
+  const Span span{first.span.begin, name.span.end};
+  const std::string meant =
+      std::string(name.text) + " " + std::string(source_.text({first.span.begin, second.span.end}));
+  return !read_.fail(Code::kSyntax, span, "a strategy's name stands in front of its numbers",
+                     "write STRATEGY " + meant, Edit{span, meant});
 }
 
 bool RuleReader::strategy_ends(Scanner& s) {
@@ -269,7 +289,8 @@ bool RuleReader::inside_rule(std::string_view keyword) {
   return read_.fail(Code::kOutOfPlace, keyword_, std::string(keyword) + " belongs to a RULE",
                     into_->rules.empty()
                         ? "put a RULE line before it"
-                        : "put a RULE line before it: INCLUDE, TEMPLATE and USE end the one above");
+                        : "INCLUDE, TEMPLATE and USE end the rule above: move that line out of the "
+                          "rule, or put a RULE line before this one");
 }
 
 // Where one line is there twice, a RULE line is missing more likely, and the other lines follow.

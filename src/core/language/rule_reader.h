@@ -41,6 +41,7 @@ class RuleReader {
   bool policy(Scanner& s, syntax::Policies& policies);
   bool has_condition(Scanner& s);
   bool strategy_ends(Scanner& s);
+  bool is_name_last(const Scanner& s);
   // The rule whose first line was not understood, and was reported.
   void begin_unnamed_rule();
   bool inside_rule(std::string_view keyword);

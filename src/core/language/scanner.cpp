@@ -104,23 +104,12 @@ std::optional<Edit> in_double_quotes(std::uint32_t begin, std::string_view rest)
 struct LookAlike {
   std::string_view written, meant;
 };
-constexpr std::array<LookAlike, 17> kLookAlikes = {{{"\u2265", ">="},
-                                                    {"\u2264", "<="},
-                                                    {"\u2260", "!="},
-                                                    {"\u2212", "-"},
-                                                    {"\u2013", "-"},
-                                                    {"\u2014", "-"},
-                                                    {"\u00d7", "*"},
-                                                    {"\u00b7", "*"},
-                                                    {"\u00f7", "/"},
-                                                    {"\u2227", "&&"},
-                                                    {"\u2228", "||"},
-                                                    {"\u00ac", "!"},
-                                                    {"\u2192", ""},
-                                                    {"\u2026", ".."},
-                                                    {"~=", "!="},
-                                                    {"&", "&&"},
-                                                    {"|", "||"}}};
+constexpr std::array<LookAlike, 20> kLookAlikes = {
+    {{"&lt;", "<"},  // as XML writes them
+     {"&gt;", ">"},    {"&amp;&amp;", "&&"}, {"\u2265", ">="}, {"\u2264", "<="}, {"\u2260", "!="},
+     {"\u2212", "-"},  {"\u2013", "-"},      {"\u2014", "-"},  {"\u00d7", "*"},  {"\u00b7", "*"},
+     {"\u00f7", "/"},  {"\u2227", "&&"},     {"\u2228", "||"}, {"\u00ac", "!"},  {"\u2192", ""},
+     {"\u2026", ".."}, {"~=", "!="},         {"&", "&&"},      {"|", "||"}}};
 
 // Blanks that no keyboard shows: no-break space and the like, and those without a width.
 constexpr std::array<std::string_view, 8> kForeignBlanks = {"\u00a0", "\u2002", "\u2003", "\u2009",

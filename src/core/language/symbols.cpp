@@ -407,7 +407,9 @@ SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
   SystemdUnit unit{name.text, written.is_users_unit, declared_host(written)};
   if (!is_service_unit(unit.name)) {
     report(Code::kSyntax, "this is no service of systemd",
-           "write its whole name, as systemctl list-units does: UNIT lidar.service");
+           unit.name.find_first_of("./@") == std::string::npos
+               ? "write " + unit.name + ".service"
+               : "write its whole name, as systemctl list-units does: UNIT lidar.service");
   } else if (written.launch || written.is_respawned) {
     const std::string other = written.launch ? "LAUNCH" : "RESPAWNED";
     report(Code::kTwoOwners,

@@ -154,6 +154,10 @@ std::nullopt_t Typer::unknown_type(const Expression& e) {
   }
   if (names_broken_constant(whole_)) return std::nullopt;  // which would have told
   const std::string& name = e.name.text;
+  if (&e == &whole_ && symbols_.is_looked_up(name))
+    return fail(Code::kUnknownType, e.span, "cannot infer the type of this value",
+                "a text needs quotes: write \"" + name +
+                    "\"; a constant is declared, as in CONST " + name + " = 5");
   const std::string declare =
       symbols_.is_looked_up(name) ? "declare it, as in CONST " + name + " = ..., or " : "";
   return fail(Code::kUnknownType, e.span, "cannot infer the type of this value",

@@ -65,6 +65,7 @@ std::optional<Remedy> remedy_of_symbol(const UnknownLine& line, const Token& hea
     return Remedy{"a rule file has no sections: a rule begins with RULE and its name"};
   if (written == "<")
     return Remedy{"a rule file has no tags: a rule begins with RULE and its name"};
+  if (written == "..") return Remedy{"write the lines that belong here, or remove it"};
   if (written == "`") return Remedy{"remove the line: a rule file has no code fences"};
   if (written == "!" && line.is_in_rule) return remedy_of_condition(line, head);
   constexpr std::string_view kOperators = "&& || & | < <= > >= == != + * / %";
@@ -167,7 +168,8 @@ std::string report_unknown_line(const UnknownLine& line, const Token& head, cons
   const Remedy remedy = remedy_of_word(line, head, s, near);
   line.read.fail(Code::kUnknownStatement, head.span, cause, remedy.text, remedy.fix);
   // A word of another tool may stand for a line that the rule has as well.
-  const bool is_foreign = near != "RULE" && near == statement_of_other_tools(upper_case(head.text));
+  const bool is_foreign =
+      near != "RULE" && near != "END" && near == statement_of_other_tools(upper_case(head.text));
   return is_foreign ? "" : near;
 }
 

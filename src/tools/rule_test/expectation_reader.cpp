@@ -59,6 +59,14 @@ class ExpectationReader {
   bool no_strategy() {
     e_.kind = Kind::kAnyChosen;
     e_.wanted = false;
+    const Token& next = s_.peek();
+    const std::string name(next.text);
+    if (fits(name, About::kRule))
+      return read_.fail(Code::kSyntax, next.span, "NO stands only in front of STRATEGY",
+                        "write EXPECT NOT " + name + " DETECTED");
+    if (fits(name, About::kComponent))
+      return read_.fail(Code::kSyntax, next.span, "NO stands only in front of STRATEGY",
+                        "write EXPECT NO STRATEGY OF " + name);
     return read_.expect_word(s_, "STRATEGY");
   }
 

@@ -59,12 +59,25 @@ class Reader {
     if (!is_read.value_or(false) || !read_.line_ends(s)) is_broken_ = true;
   }
 
-  // One mistake, one message: the lines that follow belong to a test.
+  // One mistake, one message: the lines that follow belong to a test, or to the rule.
   void unknown_statement(const Token& head, Scanner& s) {
+    if (is_time_last(head, s)) return;
+    if (is_of_rules(upper_case(head.text)) && std::exchange(has_line_of_rules_, true)) return;
     if (fail_unknown_statement(read_, source_, head, all_keywords()) != "TEST") return;
     const std::size_t complaints = read_.complaints();
     test(s);
     read_.forget_since(complaints);
+  }
+
+  // "camera KILLED AT 2s": reported.
+  bool is_time_last(const Token& head, const Scanner& s) {
+    const std::string component(head.text);
+    const std::string incident(s.peek().text);
+    const bool is_incident = incident == "KILLED" || incident == "STOPPED" || incident == "HUNG";
+    return is_incident && names_.is_component(component) &&
+           !read_.fail(Code::kUnknownStatement, head.span,
+                       "no statement begins with '" + component + "'",
+                       "write the time first: AT 2s " + component + " " + incident);
   }
 
   // Empty if no statement begins with `keyword`.
@@ -242,10 +255,11 @@ class Reader {
     Span span;
     Duration begins{};
   };
-  std::vector<Moment> moments_;  // of the lines of the test under way
-  bool has_scenario_ = false;    // the test under way says what happens
-  bool has_stray_run_ = false;   // a RUN is what was reported outside of a test
-  bool has_stray_line_ = false;  // outside of a test, which was reported
+  std::vector<Moment> moments_;     // of the lines of the test under way
+  bool has_scenario_ = false;       // the test under way says what happens
+  bool has_stray_run_ = false;      // a RUN is what was reported outside of a test
+  bool has_stray_line_ = false;     // outside of a test, which was reported
+  bool has_line_of_rules_ = false;  // which was reported
   bool is_broken_ = false;  // a line of the test under way; what follows from it is not reported
   Span keyword_;
 };

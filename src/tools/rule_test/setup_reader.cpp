@@ -59,14 +59,6 @@ std::string statement_for(std::string_view upper, const std::vector<std::string_
   return "";
 }
 
-// Whether a line of a rule file begins with it.
-bool is_of_rules(std::string_view upper) {
-  constexpr auto kWords = std::to_array<std::string_view>(
-      {"RULE", "POLICIES", "TRIGGER", "CONST", "DEPENDENCY", "INTERLOCK", "CYCLE", "ROBOT", "GROUP",
-       "IGNORE", "TEMPLATE", "USE"});
-  return std::ranges::find(kWords, upper) != kWords.end();
-}
-
 // The incidents of a process.
 std::optional<Incident::Kind> incident_of(std::string_view word) {
   if (word == "KILLED") return Incident::Kind::kKilled;
@@ -336,6 +328,13 @@ bool SetupReader::is_subject_of_at(const Scanner& s) {
   const std::string meant = component.text + " " + incident;
   return read_.fail(Code::kSyntax, span, "the component stands in front of what happens to it",
                     "write " + meant, Edit{span, meant});
+}
+
+bool is_of_rules(std::string_view upper) {
+  constexpr auto kWords = std::to_array<std::string_view>(
+      {"RULE", "POLICIES", "TRIGGER", "CONST", "DEPENDENCY", "INTERLOCK", "CYCLE", "ROBOT", "GROUP",
+       "IGNORE", "TEMPLATE", "USE"});
+  return std::ranges::find(kWords, upper) != kWords.end();
 }
 
 std::string fail_unknown_statement(LineReader& read, const Source& source, const Token& head,

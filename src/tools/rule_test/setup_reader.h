@@ -56,6 +56,9 @@ class SetupReader {
   Scenario* scenario_ = nullptr;  // of the statement that is read
 };
 
+// Whether a line of a rule file begins with it; a word in upper case.
+bool is_of_rules(std::string_view upper);
+
 // Reports that a line begins with `head`, which is none of `keywords`. Gives the one that was meant;
 // empty: none is near.
 std::string fail_unknown_statement(LineReader& read, const Source& source, const Token& head,

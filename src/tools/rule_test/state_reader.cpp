@@ -22,12 +22,23 @@ class StateReader {
   State read() {
     for (std::uint32_t line = 1; line <= source_.line_count(); ++line) {
       Scanner scanner(source_.text(), source_.line(line));
-      if (!scanner.at_end() && statement(scanner)) read_.line_ends(scanner);
+      if (scanner.at_end()) continue;
+      if (is_test(scanner)) break;
+      if (statement(scanner)) read_.line_ends(scanner);
+      has_statement_ = true;
     }
     return std::move(state_);
   }
 
  private:
+  // A test begins with RULES. Reported: none of its lines says more.
+  bool is_test(const Scanner& s) {
+    const Token& head = s.peek();
+    return !has_statement_ && head.text == "RULES" &&
+           !read_.fail(Code::kOutOfPlace, head.span, "this file is a test, and no state",
+                       "culprit test runs it; a state says only how the robot is");
+  }
+
   bool statement(Scanner& s) {
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad)
@@ -108,6 +119,7 @@ class StateReader {
   Names names_;
   SetupReader setup_;
   State state_;
+  bool has_statement_ = false;
 };
 
 }  // namespace

@@ -19,7 +19,16 @@ std::optional<syntax::TemplateParameter> parameter(LineReader& read, Scanner& s)
               "write '=' in front of the usual value", Edit{s.peek().span, " ="});
     return std::nullopt;
   }
-  if (!s.peek().is("=")) return out;
+  const Token& next = s.peek();
+  const bool is_value = next.kind == Token::Kind::kNumber || next.kind == Token::Kind::kDuration ||
+                        next.kind == Token::Kind::kString || next.is("/");
+  if (is_value) {
+    read.fail(Code::kSyntax, next.span, "'=' is missing in front of the usual value",
+              "write " + out.name.text + " = " + s.ahead().next_name().text,
+              Edit{{next.span.begin, next.span.begin}, "= "});
+    return std::nullopt;
+  }
+  if (!next.is("=")) return out;
   s.next();
   out.usual = read.name_or_text(s, "what '" + out.name.text + "' is if a USE does not say");
   return out.usual ? std::optional(std::move(out)) : std::nullopt;
@@ -56,13 +65,25 @@ bool is_named(LineReader& read, const Name& argument) {
       value.empty() ? std::nullopt : std::optional(Edit{argument.span, value}));
 }
 
+// Or an argument without a ',' in front, which is reported.
+bool comma(LineReader& read, Scanner& s) {
+  const Token& next = s.peek();
+  const bool is_argument =
+      next.kind == Token::Kind::kIdentifier || next.kind == Token::Kind::kNumber ||
+      next.kind == Token::Kind::kDuration || next.kind == Token::Kind::kString || next.is("/");
+  if (!is_argument) return read.expect_symbol(s, ",");
+  const Name argument = s.ahead().next_name();
+  return read.fail(Code::kSyntax, argument.span, "expected ',', not '" + argument.text + "'",
+                   "write a ',' in front of it", Edit{{s.taken(), s.taken()}, ","});
+}
+
 // "(a, b)": `read_one` takes one of them, and gives false if it cannot.
 template <class ReadOne>
 bool list(LineReader& read, Scanner& s, ReadOne read_one) {
   if (!s.peek().is("(")) return true;
   s.next();
   for (bool is_first = true; !s.peek().is(")"); is_first = false) {
-    if (!is_first && !read.expect_symbol(s, ",")) return false;
+    if (!is_first && !comma(read, s)) return false;
     if (!read_one()) return false;
     if (s.at_end()) return read.expect_symbol(s, ")");
   }
