@@ -45,6 +45,10 @@ Expected<Duration> parse_duration(std::string_view text) {
   const std::string given(text);
   if (name == "m")
     return Error{"'" + given + "' is not a duration; write " + given + "in for minutes"};
+  constexpr double kMostDays = 1000;
+  if (name == "d" && error == std::errc() && number >= 1 && number <= kMostDays)
+    return Error{"'" + given + "' is not a duration; write " +
+                 std::to_string(static_cast<int>(number * 24)) + "h"};
   return Error{"'" + given +
                "' is not a duration; write a number and a unit, as in 500ms, 2s or 1.5min"};
 }

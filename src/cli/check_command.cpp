@@ -56,9 +56,12 @@ void print_text(const Expansion& file, const Checked& checked) {
   const auto own = own_templates(file);
   const std::string templates =
       own > 0 ? ", " + amount_of(static_cast<std::size_t>(own), "template") : "";
-  fmt::print("{}: {}, {}, {}{}: ok\n", file.source.name(), amount_of(rules.rules.size(), "rule"),
+  const auto warnings = static_cast<std::size_t>(
+      std::ranges::count(checked.diagnostics, Severity::kWarning, &Diagnostic::severity));
+  fmt::print("{}: {}, {}, {}{}: {}\n", file.source.name(), amount_of(rules.rules.size(), "rule"),
              amount_of(rules.strategies.size(), "strategy", "strategies"),
-             amount_of(rules.components.size(), "component"), templates);
+             amount_of(rules.components.size(), "component"), templates,
+             warnings > 0 ? amount_of(warnings, "warning") : "ok");
 }
 
 void print_findings(const RuleSet& rules, const LiveInventory& robot) {

@@ -77,8 +77,10 @@ TEST_F(CheckCommand, WarnsOfAFileWithoutARule) {
   for (const char* empty : {"", "# later\n", "IGNORE TOPIC /clock\n"}) {
     EXPECT_EQ(check_file(empty, {}), kOk);
     EXPECT_THAT(said_, HasSubstr("warning[R006]: this file has no rule")) << empty;
+    EXPECT_THAT(printed_, HasSubstr("0 components: 1 warning\n")) << empty;
   }
   EXPECT_EQ(check_file("CONST limit = 2s\n", {}), kOk) << "another file may include it";
+  EXPECT_THAT(printed_, HasSubstr("0 components: ok\n"));
   EXPECT_EQ(said_, "");
 }
 

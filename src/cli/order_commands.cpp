@@ -128,8 +128,7 @@ int order(const OrderOptions& options, const MakeOrder& make) {
         to_line({{"orders", list}, {"others", here->others}, {"not_meant", here->not_meant}}));
   // The user may have meant one of these.
   for (const auto* others : {&here->others, &here->not_meant}) {
-    for (const std::string& other : *others)
-      say(stderr, "culprit: not asked: {}\n", escape_controls(other));
+    for (const std::string& other : *others) say(stderr, "culprit: {}\n", escape_controls(other));
   }
   return is_all_done && (here->others.empty() || !all) ? kOk : kFailed;
 }

@@ -81,7 +81,8 @@ void add_help(CLI::App& app, int& exit_code) {
         const std::string near = closest(word, known);
         const bool is_program = about == &app;
         std::string remedy = is_program      ? "; " + app.get_name() + " help lists them"
-                             : known.empty() ? ""
+                             : known.empty() ? "; " + app.get_name() + " help " +
+                                                   about->get_name() + " lists its options"
                                              : fmt::format("; it has {}", fmt::join(known, ", "));
         if (!near.empty()) remedy = "; did you mean '" + near + "'?";
         exit_code = fail((is_program ? "there is" : about->get_name() + " has") + " no command '" +

@@ -66,6 +66,11 @@ int parse_and_run(CLI::App& app, const std::function<void(int& exit_code)>& add_
       argc > 2 && (argv[1] == std::string_view("--help") || argv[1] == std::string_view("-h")) &&
       *argv[2] != '-';
   if (is_help_first) std::rotate(argv + 1, argv + 2, argv + argc);
+  // "--wait 3 s": the unit may be taken for one more file.
+  if (const CLI::App* command = command_named(app, argv[1]); command != nullptr) {
+    if (const auto slip = duration_of_two_words(*command, argc, argv))
+      return usage_error(*slip, app, {command, app.get_name() + " " + command->get_name(), 1});
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -50,13 +50,18 @@ Ended ended(std::vector<std::string> words) {
         CLI::App* test = app.add_subcommand("test", "Test");
         test->add_flag("--verbose", robot, "All");
         test->add_option("FILES", files, "Files")->required();
+        add_seconds(*test, "--for", wait, "How long", 0.5, 60);
         CLI::App* beliefs = app.add_subcommand("beliefs", "Beliefs")->require_subcommand(1);
         CLI::App* show = beliefs->add_subcommand("show", "Show");
         show->add_flag("--verbose", robot, "All");
         show->callback([] {});
         CLI::App* note = app.add_subcommand("note", "Note");
         note->add_option("--reason", format, "Why");
+        note->add_option("--lines", port, "How many");
+        note->add_option("--journal", file, "Where");
+        note->add_option("--file", file, "What")->check(CLI::ExistingFile);
         note->callback([&code] { code = fail("the note is empty", kUsage); });
+        app.add_subcommand("end-all", "End")->callback([] {});
         add_help(app, code);
       },
       static_cast<int>(words.size()), argv.data());
@@ -110,6 +115,16 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
        "--wait: a duration is one word; write --wait 5min\n"},
       {{"check", "--wait=5", "s", "a"}, "--wait: a duration is one word; write --wait 5s\n"},
       {{"check", "a", "two words"}, "'two words' is one argument too many"},
+      {{"test", "a", "--for", "3", "s"}, "--for: a duration is one word; write --for 3s\n"},
+      {{"test", "a", "--for", "1d"}, "--for: '1d' is not a duration; write 24h\n"},
+      {{"note", "--limit", "3"}, "note has no option '--limit'; did you mean '--lines'?\n"},
+      {{"note", "3"}, "'3' is one argument too many; did you mean --lines 3?\n"},
+      {{"note", "a.journal"}, "did you mean --journal 'a.journal'?\n"},
+      {{"check", "--werror", "a"}, "check has no option '--werror'; write --fail-on warning\n"},
+      {{"note", "--file", "none"}, "--file: there is no file 'none'\n"},
+      {{"check", "\u2013\u2013robot", "a", "b"}, "typographic dash; write --robot\n"},
+      {{"help", "check", "robot"},
+       "check has no command 'robot'; culprit help check lists its options"},
       {{"check", "--robot=5"}, "--robot takes no value; remove '=5'\n"},
       {{"check", "--robot", "true", "a"}, "--robot takes no value; remove 'true'\n"},
       {{"check", "\u2014robot", "a", "b"}, "typographic dash; write --robot\n"},
@@ -118,6 +133,7 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"help", "beliefs", "list"}, "beliefs has no command 'list'; it has show\n"},
       {{"check", "--seconds", "3"}, "check has no option '--seconds'; did you mean '--wait'?\n"},
       {{"--robot", "check"}, "'--robot' stands in front of the command; write it behind check\n"},
+      {{"end"}, "there is no command 'end'; did you mean 'end-all'?\n"},
       {{"lint"}, "there is no command 'lint'; did you mean 'check'?\n"},
       {{"note", "hello"}, "'hello' is one argument too many; note takes no arguments\n"},
       {{"note", "it is hot"}, "; did you mean --reason 'it is hot'?\n"},

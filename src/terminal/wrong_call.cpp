@@ -94,7 +94,8 @@ std::string_view option_of_other_tools(std::string_view option,
       {"--noop", "--dry-run"},  {"--name", "--component"},   {"--size", "--record-budget"},
       {"--only", "--filter"},   {"--follow", "--for"},       {"--node", "--component"},
       {"--faults", "--kinds"},  {"--component", "--only"},   {"--live", "--robot"},
-      {"-n", "--dry-run"},      {"--token", "--token-file"}, {"--level", "--kind"}};
+      {"-n", "--dry-run"},      {"--token", "--token-file"}, {"--level", "--kind"},
+      {"--limit", "--lines"},   {"-c", "--config"}};
   return translated(option, kWords, known);
 }
 
@@ -110,9 +111,19 @@ std::string_view advice_about(std::string_view option, std::string_view command)
   constexpr std::string_view kRosArguments =
       "leave it out, for culprit takes no arguments of ROS; see culprit run --help";
   constexpr std::string_view kList = "write silence list";
+  constexpr std::string_view kWarnings = "write --fail-on warning";
+  constexpr std::string_view kPause =
+      "a pause lasts until culprit resume; culprit silence NAME --for 5min leaves one part alone";
   constexpr std::string_view kSends = "alerts only sends a test";
   constexpr std::string_view kWrites = "fmt writes the file unless --check or --diff is given";
-  constexpr auto kAdvice = std::to_array<Advice>({{"--domain", "", kDomain},
+  constexpr auto kAdvice = std::to_array<Advice>({{"--werror", "check", kWarnings},
+                                                  {"--warnings-as-errors", "check", kWarnings},
+                                                  {"-W", "check", kWarnings},
+                                                  {"--for", "pause", kPause},
+                                                  {"--watch", "top", "leave it out: top is live"},
+                                                  {"--output", "check", kFile},
+                                                  {"-o", "check", kFile},
+                                                  {"--domain", "", kDomain},
                                                   {"--domain-id", "", kDomain},
                                                   {"--verbose", "run", kEvents},
                                                   {"-v", "run", kEvents},
@@ -250,11 +261,23 @@ std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::s
   return is_program ? "" : few_options(known);
 }
 
+// "end-started" for "end"; empty: none begins with that word, or several do.
+std::string_view only_with_first_part(std::string_view word,
+                                      const std::vector<std::string_view>& known) {
+  const auto begins = [&](std::string_view each) {
+    return each.starts_with(word) && each.substr(word.size()).starts_with('-');
+  };
+  const auto found = std::ranges::find_if(known, begins);
+  return std::ranges::count_if(known, begins) == 1 ? *found : "";
+}
+
 std::string remedy_of_command(const CLI::App& app, std::string_view word) {
   const std::vector<std::string_view> known = names_of(commands_in(app));
   if (word == "version") return "; did you mean '--version'?";
   if (const auto ours = command_of_other_tools(word, known); !ours.empty())
     return "; did you mean '" + std::string(ours) + "'?";
+  if (const auto whole = only_with_first_part(word, known); !whole.empty())
+    return "; did you mean '" + std::string(whole) + "'?";
   if (std::string near = meant(word, known); !near.empty()) return near;
   if (word.ends_with(".rules") && command_named(app, "check") != nullptr)
     return "; did you mean '" + app.get_name() + " run " + printable(word) + "'?";
@@ -344,6 +367,11 @@ std::string remedy_of_extra(std::string_view extra, std::string_view before,
   const auto has = [&](const char* name) { return command.get_option_no_throw(name) != nullptr; };
   const std::string duration = std::string(extra) + (extra.ends_with('m') ? "in" : "");
   if (has("--for") && parse_duration(duration)) return "; did you mean --for " + duration + "?";
+  const bool is_count = extra.find_first_not_of("0123456789") == std::string_view::npos;
+  if (has("--lines") && is_count && !extra.empty())
+    return "; did you mean --lines " + std::string(extra) + "?";
+  if (has("--journal") && extra.ends_with(".journal"))
+    return "; did you mean --journal '" + printable(extra) + "'?";
   const bool is_rule_file = extra.ends_with(".rules");
   if (has("--output") && !is_rule_file && extra.find('.') != std::string_view::npos)
     return "; did you mean --output '" + printable(extra) + "'?";
@@ -364,6 +392,8 @@ std::string remedy_of_extra(std::string_view extra, std::string_view before,
     if (command.get_option_no_throw(known) != nullptr)
       return fmt::format("; did you mean {} '{}'?", known, printable(extra));
   }
+  if (command.get_name() == "pause")
+    return "; culprit silence " + printable(extra) + " leaves one part alone";
   return "; " + command.get_name() + " takes no arguments";
 }
 
@@ -393,34 +423,20 @@ std::string kind_of_value(const CLI::App& command, const std::string& name) {
   return value.empty() || value == "TEXT" ? "" : ": " + value;
 }
 
-// "--for 10 minutes"
-std::optional<std::string> duration_of_two_words(const CLI::App& command, int argc, char** argv) {
-  for (int i = 2; i + 1 < argc; ++i) {
-    const std::string word(argv[i]);
-    const auto equals = word.find('=');
-    const bool is_joined = word.starts_with("--") && equals != std::string::npos;
-    const std::string option = is_joined ? word.substr(0, equals) : argv[i - 1];
-    const std::string number = is_joined ? word.substr(equals + 1) : word;
-    const CLI::Option* known = command.get_option_no_throw(option);
-    const bool is_duration = known != nullptr && value_of(*known) == "DURATION";
-    const bool is_number =
-        !number.empty() && number.find_first_not_of("0123456789.") == std::string::npos;
-    const std::string unit = unit_of_words(argv[i + 1]);
-    if (is_duration && is_number && !unit.empty())
-      return option + ": a duration is one word; write " + option + " " + number + unit;
+// `word` without the dashes that an editor put in place of "--".
+std::string without_dashes(const std::string& word) {
+  for (const std::string_view dash : {"\u2014", "\u2013", "\u2212"}) {
+    if (word.starts_with(dash)) return without_dashes(word.substr(dash.size()));
   }
-  return std::nullopt;
+  return word;
 }
 
 // "--use-sim-time true"; "use_sim_time:=true", as ROS's tools have it; a dash that an editor made of two.
 std::optional<std::string> slip_in_word(const CLI::App& command, int argc, char** argv) {
   for (int i = 2; i < argc; ++i) {
     const std::string word(argv[i]);
-    for (const char* dash : {"\u2014", "\u2013", "\u2212"}) {
-      if (word.starts_with(dash))
-        return "an argument begins with a typographic dash; write --" +
-               printable(word.substr(std::string_view(dash).size()));
-    }
+    if (const std::string name = without_dashes(word); name != word)
+      return "an argument begins with a typographic dash; write --" + printable(name);
     const CLI::Option* before = command.get_option_no_throw(argv[i - 1]);
     const bool is_switch = is_one_of(word, {"true", "false", "yes", "no", "on", "off"});
     if (is_switch && before != nullptr && before->get_items_expected_max() == 0)
@@ -484,6 +500,24 @@ std::string cause_of_wrong_call(const CLI::ParseError& error, const CLI::App& ap
   return cause_of(error, app, *line.command, argc, argv);
 }
 
+std::optional<std::string> duration_of_two_words(const CLI::App& command, int argc, char** argv) {
+  for (int i = 2; i + 1 < argc; ++i) {
+    const std::string word(argv[i]);
+    const auto equals = word.find('=');
+    const bool is_joined = word.starts_with("--") && equals != std::string::npos;
+    const std::string option = is_joined ? word.substr(0, equals) : argv[i - 1];
+    const std::string number = is_joined ? word.substr(equals + 1) : word;
+    const CLI::Option* known = command.get_option_no_throw(option);
+    const bool is_duration = known != nullptr && value_of(*known) == "DURATION";
+    const bool is_number =
+        !number.empty() && number.find_first_not_of("0123456789.") == std::string::npos;
+    const std::string unit = unit_of_words(argv[i + 1]);
+    if (is_duration && is_number && !unit.empty())
+      return option + ": a duration is one word; write " + option + " " + number + unit;
+  }
+  return std::nullopt;
+}
+
 std::string words_of_invalid_value(const std::string& text) {
   const std::size_t colon = text.find(": ");
   if (colon == std::string::npos) return text;
@@ -494,6 +528,9 @@ std::string words_of_invalid_value(const std::string& text) {
   if (const auto at = rest.find(kRange); at != std::string::npos)
     return option + "'" + rest.substr(0, at) + "' is no number from " +
            plain_range(rest.substr(at + kRange.size()));
+  constexpr std::string_view kNoFile = "File does not exist: ";
+  if (rest.starts_with(kNoFile))
+    return option + "there is no file '" + printable(rest.substr(kNoFile.size())) + "'";
   if (rest.find("unit not recognized") != std::string::npos)
     return option + "unknown unit; write a number and kB, MB or GB, as in 200MB";
   constexpr std::string_view kSet = " not in {";

@@ -2,6 +2,7 @@
 // CLI11 has its own words for each.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -19,6 +20,9 @@ Chosen chosen(const CLI::App& app);
 // One line, without a point at its end. `error`: that parsing ended with.
 std::string cause_of_wrong_call(const CLI::ParseError& error, const CLI::App& app,
                                 const Chosen& line, int argc, char** argv);
+
+// "--for 10 minutes": what is wrong; nothing: no duration is written as two words.
+std::optional<std::string> duration_of_two_words(const CLI::App& command, int argc, char** argv);
 
 // CLI11's message about the value of an option in the words of people: "--port: '0' is no number from
 // 1 to 9".

@@ -86,6 +86,8 @@ Expected<RuleDesk::Content> RuleDesk::read() const {
   if (fixed_) return Content{*fixed_, version_of(*fixed_)};
   std::error_code error;
   if (!std::filesystem::exists(path_, error) && !error) return Content{"", version_of("")};
+  if (std::filesystem::is_directory(path_, error))
+    return Error{"'" + path_ + "' is a folder; name a rule file in it"};
   if (!std::filesystem::is_regular_file(path_, error))
     return Error{"'" + path_ + "' is no regular file, and so no rule file"};
   auto text = read_text(path_);
