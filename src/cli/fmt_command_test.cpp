@@ -46,6 +46,12 @@ struct Fmt : testing::Test {
   std::string err;
 };
 
+TEST_F(Fmt, SaysOnceThatAFileIsNoRuleFile) {
+  EXPECT_EQ(fmt({write("notes.txt", "Buy milk.\nCall the lab.\n")}), kFailed);
+  EXPECT_THAT(err, HasSubstr("no line of this file is a statement of the rule language"));
+  EXPECT_EQ(err.find("error["), err.rfind("error[")) << err;
+}
+
 TEST_F(Fmt, RewritesAFileAndKeepsItsPermissions) {
   const std::string file = write("a.rules", kCareless);
   chmod(file.c_str(), 0640);

@@ -238,8 +238,11 @@ Expected<RunConfiguration> with_configuration(std::vector<std::string> words) {
       if (auto trusted = live::trust_rules(options.config); !trusted) return Error{trusted.error()};
     }
     auto text = read_text(options.config);
+    std::error_code error;
+    const bool is_there = std::filesystem::exists(options.config, error);
     if (!text)
-      return Error{text.error() + "\nculprit run --print-config > culprit.toml writes one"};
+      return Error{text.error() +
+                   (is_there ? "" : "\nculprit run --print-config > culprit.toml writes one")};
     const auto more = words_of_file({options.config, std::move(*text)}, *run);
     if (!more) return Error{more.error()};
     // Behind a "--" everything is the name of a rule file.

@@ -119,6 +119,10 @@ TEST_F(RunConfigurationFile, MustBeThere) {
   const auto result = with_configuration({"run", "--config", folder_.path() / "none.toml"});
   ASSERT_FALSE(result);
   EXPECT_THAT(result.error(), HasSubstr("none.toml"));
+  EXPECT_THAT(result.error(), HasSubstr("--print-config > culprit.toml writes one"));
+  const auto folder = with_configuration({"run", "--config", folder_.path()});
+  ASSERT_FALSE(folder);
+  EXPECT_THAT(folder.error(), testing::Not(HasSubstr("--print-config")));
 }
 
 TEST_F(RunConfigurationFile, IsPrintedWithEveryOption) {

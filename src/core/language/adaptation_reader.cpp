@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "base/closest.h"
 #include "language/foreign_words.h"
@@ -274,7 +276,12 @@ class AdaptationReader {
     if (!adaptation.value) return "";
     if (s.peek().kind == Token::Kind::kIdentifier && !is_last_word(s))
       return "one line sets one parameter: write a line for each";
-    return s.at_end() ? both_at_the_end(adaptation) : "";
+    if (!s.at_end()) return "";
+    const syntax::Expression& value = *adaptation.value;
+    const bool may_be_impact = value.kind != syntax::Expression::Kind::kLiteral ||
+                               std::holds_alternative<std::int64_t>(*value.literal);
+    return may_be_impact ? both_at_the_end(adaptation)
+                         : "write it behind the value: a number of cycles, such as 5";
   }
 
   static std::string both_at_the_end(const syntax::Adaptation& adaptation) {

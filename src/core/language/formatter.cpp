@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "language/foreign_files.h"
 #include "language/functions.h"
 #include "language/parser.h"
 #include "language/scanner.h"
@@ -283,6 +284,7 @@ Expected<std::string> format(const Source& source, Colour colour) {
   std::vector<Lexeme> lexemes;
   parse(source, diagnostics, &lexemes);
   if (!diagnostics.empty()) {
+    condense(source, diagnostics);
     return Error{render(diagnostics, source, colour)};
   }
   std::vector<Line> lines = lines_of(source, lexemes);

@@ -240,7 +240,8 @@ class Expander {
       const std::string near = closest(name, all);
       refuse_use(unit, Code::kUnknownTemplate, use.pattern.span,
                  "there is no template '" + name + "'",
-                 near.empty() ? "INCLUDE the file that has it" : "did you mean '" + near + "'?",
+                 near.empty() ? "INCLUDE the file that has it, as in INCLUDE \"packs/nav2.rules\""
+                              : "did you mean '" + near + "'?",
                  replacement(use.pattern.span, near));
       return nullptr;
     }
