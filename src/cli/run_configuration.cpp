@@ -1,9 +1,11 @@
 #include "cli/run_configuration.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -66,10 +68,14 @@ struct ConfigurationFile {
   }
 };
 
-// `key` without the dashes and underscores that people write in it: "--dry_run".
+// The option that `key` was meant to be: dry-run of "--dry_run" or "CULPRIT_DRY_RUN".
 std::string as_option(std::string key) {
   key.erase(0, std::min(key.find_first_not_of('-'), key.size()));
-  std::replace(key.begin(), key.end(), '_', '-');
+  std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) {
+    return c == '_' ? '-' : static_cast<char>(std::tolower(c));
+  });
+  constexpr std::string_view kVariable = "culprit-";
+  if (key.starts_with(kVariable)) key.erase(0, kVariable.size());
   return key;
 }
 
@@ -111,15 +117,26 @@ Error unknown_key(const ConfigurationFile& file, const std::string& key,
       (near.empty() ? "culprit run --print-config lists all" : "did you mean '" + near + "'?")};
 }
 
-// The first line whose text begins with a quote that is never closed; 0: none.
-int line_of_open_quote(const std::string& text) {
+// Whether the list that begins at `open` has no end before the next line with a '='.
+bool is_open_list(const std::string& text, std::size_t open) {
+  const auto close = text.find(']', open);
+  const auto next = text.find('=', open);
+  return close == std::string::npos || next < close;
+}
+
+// The first line whose text or list has no end; 0: none.
+int line_of_open_value(const std::string& text) {
+  std::size_t at = 0;  // where the line begins
   std::istringstream lines(text);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
+    const std::size_t line_begin = std::exchange(at, at + line.size() + 1);
     const auto equals = line.find('=');
     if (equals == std::string::npos || line.find('#') < equals) continue;
     const auto begin = line.find_first_not_of(" \t", equals + 1);
     const bool is_text = begin != std::string::npos && (line[begin] == '"' || line[begin] == '\'');
+    const bool is_list = begin != std::string::npos && line[begin] == '[';
+    if (is_list && is_open_list(text, line_begin + begin)) return number;
     // A text over several lines begins with three quotes.
     if (is_text && line.compare(begin, 3, std::string(3, line[begin])) != 0 &&
         line.find(line[begin], begin + 1) == std::string::npos)
@@ -157,9 +174,10 @@ Expected<std::vector<std::string>> words_of_item(const ConfigurationFile& file,
 }
 
 Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, CLI::App& run) {
-  if (const int line = line_of_open_quote(file.text); line > 0)
-    return Error{fmt::format("{}:{}: this text has no closing quote; write it where the text ends",
-                             file.name, line)};
+  if (const int line = line_of_open_value(file.text); line > 0)
+    return Error{
+        fmt::format("{}:{}: this value has no end; write the closing quote, or the ] of its list",
+                    file.name, line)};
   std::istringstream text(file.text);
   std::vector<CLI::ConfigItem> items;
   try {

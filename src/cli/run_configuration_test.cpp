@@ -110,7 +110,14 @@ TEST_F(RunConfigurationFile, SaysHowALineIsWritten) {
   EXPECT_EQ(error_of("watch = true\n"),
             file_ + ":1: culprit run has no option 'watch'; culprit run --print-config lists all");
   EXPECT_EQ(error_of("web = true\nrules = \"a.rules\n"),
-            file_ + ":2: this text has no closing quote; write it where the text ends");
+            file_ + ":2: this value has no end; write the closing quote, or the ] of its list");
+  EXPECT_EQ(error_of("record-topics = [\"/scan\", \"/odom\"\nweb = true\n"),
+            file_ + ":1: this value has no end; write the closing quote, or the ] of its list");
+  EXPECT_EQ(error_of("record-topics = [\"/scan\",\n  \"/odom\"]\nweb = true\n"), "no error");
+  EXPECT_EQ(error_of("CULPRIT_SETTLE = \"8s\"\n"),
+            file_ + ":1: culprit run has no option 'CULPRIT_SETTLE'; did you mean 'settle'?");
+  EXPECT_EQ(error_of("RULES = \"a.rules\"\n"),
+            file_ + ":1: culprit run has no option 'RULES'; did you mean 'rules'?");
   EXPECT_EQ(error_of("web = true\nport = 1\nweb = false\n"),
             file_ + ":3: web is given twice; keep one");
 }

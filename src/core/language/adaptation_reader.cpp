@@ -118,12 +118,13 @@ class AdaptationReader {
       case kSetParameter:
       case kIncreaseParameter:
       case kDecreaseParameter:
-        if (!take_name(adaptation.subject, "the parameter") || is_value_first(adaptation, s))
+        if (!take_name(adaptation.subject, "the parameter") || is_value_first(adaptation, s) ||
+            has_node(adaptation.subject))
           return false;
         return value(s, adaptation);
       case kChangeCommunication:
         return take_name(adaptation.subject, "the parameter that holds the topic") &&
-               take_name(adaptation.topic, "the topic");
+               take_name(adaptation.topic, "the topic") && !is_topic_first(adaptation);
       case kChangeMode:
         return take_name(adaptation.subject, "the mode");
       case kCall:
@@ -151,6 +152,29 @@ class AdaptationReader {
         return true;
     }
     return false;
+  }
+
+  // "change_communication /scan_2 scan_topic 5": reported.
+  bool is_topic_first(const syntax::Adaptation& adaptation) {
+    const Name& first = adaptation.subject;
+    const Name& second = adaptation.topic;
+    if (!first.text.starts_with('/') || second.text.find_first_of("/{\"") != std::string::npos)
+      return false;
+    const Span span{first.span.begin, second.span.end};
+    const std::string meant = second.text + " " + first.text;
+    return !read_.fail(Code::kSyntax, span, "the parameter stands in front of the topic",
+                       "write change_communication " + meant, Edit{span, meant});
+  }
+
+  // "set_parameter /base.max_speed 0.2 5": reported.
+  bool has_node(const Name& parameter) {
+    const auto dot = parameter.text.find('.');
+    if (dot == std::string::npos || !parameter.text.starts_with('/') ||
+        !is_component_reference(parameter.text.substr(0, dot)))
+      return false;
+    const std::string meant = parameter.text.substr(dot + 1);
+    return !read_.fail(Code::kSyntax, parameter.span, "a parameter is named without its node",
+                       "write " + meant, Edit{parameter.span, meant});
   }
 
   // "set_parameter 0.2 max_speed 5": reported.
@@ -199,12 +223,15 @@ class AdaptationReader {
   bool has_metres(const Scanner& s) {
     const Span first = s.peek().span;
     const std::string_view rest = source_.text(s.rest());
-    const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
+    std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
     const std::string number(word.substr(0, word.find_first_not_of("0123456789.")));
+    const bool is_apart = !number.empty() && number.size() == word.size();  // "0.4 m/s"
+    if (is_apart) word = rest.substr(0, rest.find_first_of(" \t", word.size() + 1));
     constexpr std::array<std::string_view, 8> kUnits = {"m",   "cm",    "mm",   "km",
                                                         "m/s", "m/s^2", "cm/s", "km/h"};
     const bool is_so =
-        !number.empty() && std::ranges::find(kUnits, word.substr(number.size())) != kUnits.end();
+        !number.empty() &&
+        std::ranges::find(kUnits, trimmed(word.substr(number.size()))) != kUnits.end();
     const Span all{first.begin, first.begin + static_cast<std::uint32_t>(word.size())};
     return is_so && !read_.fail(Code::kBadToken, all, "ROS parameters have no unit",
                                 "write " + number + ", in the unit that the node expects",

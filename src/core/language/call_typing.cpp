@@ -370,10 +370,9 @@ std::optional<TopicId> CallTyper::topic_argument(const Expression& e) {
       topic != written && topic.starts_with('/') && is_component_reference(topic))
     return typer_.fail(Code::kBadRosName, e.span, "'" + written + "' is a field, and no topic",
                        "write " + topic + "; only a SIGNAL reads a field", Edit{e.span, topic});
-  return typer_.fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is no full topic name",
-                     e.name.text.starts_with('/')
-                         ? remedy_of_ros_name(e.name.text)
-                         : "write it with its namespace, as in /robot/camera/image");
+  return typer_.fail(Code::kBadRosName, e.span, "'" + written + "' is no full topic name",
+                     written.starts_with('%') ? "a parameter of a TEMPLATE stands in braces"
+                                              : remedy_of_ros_name(written));
 }
 
 // "rate(/scan[5m])"

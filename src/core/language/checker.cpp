@@ -517,7 +517,8 @@ class Checker {
     if (written.impact.whole && written.impact.value >= 1 && written.impact.value <= kMaxImpact)
       return {static_cast<std::int64_t>(written.impact.value)};
     report(Code::kImpactRange, written.impact.span,
-           "an impact is a whole number of cycles, at least 1",
+           written.impact.value > kMaxImpact ? "no impact has so many cycles"
+                                             : "an impact is a whole number of cycles, at least 1",
            "count the cycles until the failure is cleared");
     return {};
   }

@@ -73,10 +73,10 @@ bool DeclarationReader::constant(Scanner& s) {
 bool DeclarationReader::equals_sign(Scanner& s, const Name& constant) {
   const Token token = s.next();
   if (token.is("=")) return true;
-  const bool is_assignment = token.is(":") && s.peek().is("=");
+  const bool is_assignment = s.peek().is("=");  // ":=", "+="
   Scanner value = s.ahead();
   if (is_assignment) value.next();
-  const bool is_sign = token.is(":");
+  const bool is_sign = token.is(":") || is_assignment;
   const Span rest{is_sign ? value.position() : token.span.begin, s.rest().end};
   const std::string written(rest.begin < rest.end ? source_.text(rest) : "0.5");
   return read_.fail_token(token, "'='", "write CONST " + constant.text + " = " + written,
@@ -343,7 +343,11 @@ bool DeclarationReader::check_field(const Scanner& s, const Name& field) {
 bool DeclarationReader::is_apart(const Scanner& s) {
   Scanner ahead = s.ahead();
   const Name written = ahead.next_name();
-  const auto dot = written.text.find('.');
+  const bool is_last =
+      ahead.at_end() || ahead.peek().text == "STALE" || ahead.peek().text == "RANGE";
+  // A node's full name has slashes of its own.
+  const bool has_slash = is_last && !written.text.starts_with('/');
+  const auto dot = written.text.find_first_of(has_slash ? "./" : ".");
   if (dot == std::string::npos || !is_component_reference(written.text.substr(0, dot))) return true;
   const std::string meant = written.text.substr(0, dot) + " " + written.text.substr(dot + 1);
   return read_.fail(Code::kSyntax, written.span, "a component and its parameter stand apart",

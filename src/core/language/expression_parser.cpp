@@ -87,6 +87,7 @@ class ExpressionParser {
       if (const Token& second = scanner_.peek(); op.span.end == second.span.begin) {
         if (auto slip = doubled(op, second)) return fail(std::move(*slip));
       }
+      if (auto slip = per_second(*left, op, scanner_.peek())) return fail(std::move(*slip));
       if (op.is("%") && !begins_value(scanner_.peek()))
         return fail(
             Code::kSyntax, op.span, "unexpected '%' after a number",
@@ -149,6 +150,20 @@ class ExpressionParser {
                       "write pow(base, exponent)"};
   }
 
+  // "8/s"
+  std::optional<Diagnostic> per_second(const Expression& left, const Token& op,
+                                       const Token& second) const {
+    const bool is_so = left.kind == Kind::kLiteral && op.is("/") &&
+                       op.span.begin == left.span.end && second.span.begin == op.span.end &&
+                       (second.text == "s" || second.text == "sec" || second.text == "second");
+    if (!is_so) return std::nullopt;
+    const Span span{left.span.begin, second.span.end};
+    const std::string number(text_of(left.span));
+    return Diagnostic{
+        Code::kSyntax,     Severity::kError,  span, "rates are in Hz and have no unit",
+        "write " + number, Edit{span, number}};
+  }
+
   std::nullopt_t unfinished(const Token& op) {
     return fail(Code::kSyntax, op.span, "a value is missing behind '" + std::string(op.text) + "'",
                 "write the other side; a statement is one line");
@@ -207,6 +222,19 @@ class ExpressionParser {
         Edit{span, meant}};
   }
 
+  // "battery is None"
+  std::optional<Diagnostic> nothing_in_words(const Token& verb) const {
+    Scanner ahead = scanner_.ahead();
+    ahead.next();
+    const Token& second = ahead.peek();
+    const std::string upper = upper_case(second.text);
+    if (upper != "NONE" && upper != "NULL" && upper != "NIL") return std::nullopt;
+    const Span span{verb.span.begin, second.span.end};
+    return Diagnostic{Code::kSyntax, Severity::kError, span,
+                      "'" + std::string(text_of(span)) + "' is no comparison",
+                      "age(/topic) > 1s detects that no value comes"};
+  }
+
   // An operator of another language behind the value `left`.
   std::optional<Diagnostic> foreign_operator(const Expression& left) {
     const Token& token = scanner_.peek();
@@ -227,6 +255,15 @@ class ExpressionParser {
       auto slip = wrong_operator(token.span, "=", "==");
       slip.remedy += " to compare";
       return slip;
+    }
+    if (token.is("!")) {
+      Scanner ahead = scanner_.ahead();
+      ahead.next();
+      const Token& second = ahead.peek();
+      const bool is_so = second.span.begin == token.span.end && (second.is(">") || second.is("<"));
+      if (is_so)
+        return wrong_operator({token.span.begin, second.span.end}, "!" + std::string(second.text),
+                              second.is(">") ? "<=" : ">=");
     }
     if (token.kind != Token::Kind::kIdentifier) return std::nullopt;
     return operator_in_words(left, token);
@@ -277,6 +314,7 @@ class ExpressionParser {
     if (meant.empty()) return std::nullopt;
     if (meant == "==") {
       if (auto slip = state_in_words(left, first)) return slip;
+      if (auto slip = nothing_in_words(first)) return slip;
     }
     Scanner ahead = scanner_.ahead();
     ahead.next();
@@ -616,8 +654,8 @@ class ExpressionParser {
 
   static bool is_physical_unit(std::string_view unit) {
     constexpr auto kUnits = std::to_array<std::string_view>(
-        {"C",  "F",  "K",   "V",   "mV",  "A", "mA", "W",  "m",  "cm",
-         "mm", "km", "deg", "rad", "rpm", "N", "Nm", "kg", "dB", "dBm"});
+        {"C",  "F",  "f",   "K",   "V",   "mV", "A",  "mA", "W",  "m",  "cm",
+         "mm", "km", "deg", "rad", "rpm", "N",  "Nm", "kg", "dB", "dBm"});
     return std::ranges::find(kUnits, unit) != kUnits.end();
   }
 

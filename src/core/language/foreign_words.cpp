@@ -107,6 +107,7 @@ constexpr auto kForeignClauses = std::to_array<ForeignWord>({
     {"FROZEN", "HUNG"},
     {"HANGS", "HUNG"},
     {"WITHIN", "BY"},
+    {"IN", "BY"},
     {"BEFORE", "BY"},
     {"UNTIL", "BY"},
     {"CRASH", "kill"},

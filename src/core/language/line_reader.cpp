@@ -98,14 +98,13 @@ bool is_label_of_number(std::string_view word) {
   return std::ranges::find(kLabels, upper_case(word)) != kLabels.end();
 }
 
-// The types of other languages, which stand in front of a name there.
+}  // namespace
+
 bool is_type_word(std::string_view word) {
   constexpr std::array<std::string_view, 9> kTypes = {
       "float", "double", "int", "bool", "string", "auto", "duration", "number", "float64"};
   return std::ranges::find(kTypes, word) != kTypes.end();
 }
-
-}  // namespace
 
 bool is_component_reference(std::string_view name) {
   return name.starts_with('/')
@@ -591,6 +590,12 @@ bool LineReader::condition_ends(Scanner& s) {
   if (upper_case(token.text) == "UNLESS")
     return fail(Code::kExtraText, token.span, "'" + std::string(token.text) + "' is no operator",
                 "write && and the condition with ! in front, as in && !docked");
+  if (upper_case(token.text) == "IF")
+    return fail(Code::kExtraText, token.span, "'" + std::string(token.text) + "' is no operator",
+                "write && and the condition, as in && docked", Edit{token.span, "&&"});
+  if (is_hertz(token.text))
+    return fail(Code::kExtraText, token.span, "rates are in Hz and have no unit",
+                "remove '" + std::string(token.text) + "'", Edit{token.span, ""});
   if (upper_case(token.text) == "FROM")
     return fail(Code::kExtraText, token.span, "FROM stands inside the parentheses",
                 "write it behind the topic, as in age(/scan FROM lidar)");

@@ -28,6 +28,9 @@ std::string upper_case(std::string_view word);
 // A component's own name, or the full name of its node.
 bool is_component_reference(std::string_view name);
 
+// The types of other languages, which stand in front of a name there.
+bool is_type_word(std::string_view word);
+
 // How to write `name`, which is no full ROS name.
 std::string remedy_of_ros_name(std::string_view name);
 

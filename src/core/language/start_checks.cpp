@@ -104,6 +104,14 @@ std::optional<CommandFlaw> flaw_of_ros_arguments(const Words& command) {
           .remedy = word.starts_with("__")
                         ? "write -r " + word
                         : "write -p " + word + " for a parameter, -r " + word + " for a name"};
+    const bool is_set = before == "-p" || before == "--param";
+    const bool is_mapped = before == "-r" || before == "--remap";
+    if (const auto equals = word.find('='); is_inside && (is_set || is_mapped) &&
+                                            equals != std::string::npos &&
+                                            !sets_name_or_parameter(word))
+      return CommandFlaw{.cause = "the node refuses '" + word + "': its '=' lacks a ':'",
+                         .remedy = "write " + before + " " + word.substr(0, equals) +
+                                   ":=" + word.substr(equals + 1)};
     const bool is_flag = word == "-p" || word == "--param" || word == "--params-file";
     if (is_run && !is_inside && is_flag && i > 3 && i + 1 < command.size() &&
         (word == "--params-file" || sets_name_or_parameter(command[i + 1])))

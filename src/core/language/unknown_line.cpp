@@ -65,6 +65,8 @@ std::optional<Remedy> remedy_of_symbol(const UnknownLine& line, const Token& hea
     return Remedy{"a rule file has no sections: a rule begins with RULE and its name"};
   if (written == "<")
     return Remedy{"a rule file has no tags: a rule begins with RULE and its name"};
+  if (head.kind == Token::Kind::kString)
+    return Remedy{"begin a comment with #", Edit{{head.span.begin, head.span.begin}, "# "}};
   if (written == "..") return Remedy{"write the lines that belong here, or remove it"};
   if (written == "`") return Remedy{"remove the line: a rule file has no code fences"};
   if (written == "!" && line.is_in_rule) return remedy_of_condition(line, head);
@@ -74,6 +76,27 @@ std::optional<Remedy> remedy_of_symbol(const UnknownLine& line, const Token& hea
   if (is_operator && line.is_in_rule)
     return Remedy{"write it at the end of the line above: a statement is one line"};
   return std::nullopt;
+}
+
+// What a rule of other tools has, and one of ours has not; empty: `upper` is none of these.
+std::string_view remedy_of_other_part(std::string_view upper) {
+  constexpr std::string_view kText = "write # in front of it: a rule has no text of its own";
+  constexpr std::string_view kSwitch =
+      "remove the line; to switch a rule off, put # in front of its lines";
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kParts = {
+      {{"DESCRIPTION", kText},
+       {"COMMENT", kText},
+       {"NOTE", kText},
+       {"AUTHOR", kText},
+       {"ENABLED", kSwitch},
+       {"DISABLED", kSwitch},
+       {"LOG", "remove the line: culprit keeps each step in its journal"},
+       {"NOTIFY", "write REPORT on the POLICIES line, which notifies a person"},
+       {"ENDRULE", "remove the line: a rule ends where the next one begins"}}};
+  for (const auto& [word, remedy] : kParts) {
+    if (word == upper) return remedy;
+  }
+  return "";
 }
 
 std::string list_of(std::span<const std::string_view> keywords) {
@@ -101,6 +124,8 @@ Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner&
             " and the condition at the end of the TRIGGER line"};
   if (upper == "ELSE" || upper == "OTHERWISE")
     return {"remove the line: the strategies of a rule are alternatives"};
+  if (const auto remedy = remedy_of_other_part(upper); !remedy.empty() && near.empty())
+    return {std::string(remedy)};
   if (const auto statement = statement_of_clause(upper); !statement.empty() && near.empty())
     return {"write it on the line of its " + std::string(statement) + ": a statement is one line"};
   if (near == "TRIGGER" && !line.is_in_rule)

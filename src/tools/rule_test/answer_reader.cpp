@@ -142,6 +142,11 @@ class AnswerReader {
   bool heals(const std::vector<Place>& places) {
     Cure cure;
     do {
+      if (const Token& next = s_.peek();
+          next.kind == Token::Kind::kDuration && !cure.subjects.empty())
+        return read_.fail(Code::kSyntax, next.span, "AFTER is missing before this",
+                          "write AFTER in front of it",
+                          Edit{{next.span.begin, next.span.begin}, "AFTER "});
       const auto name = read_.name_or_text(s_, "a topic or a signal");
       const auto subject = name ? names_.topic_or_signal(*name) : std::nullopt;
       if (!subject) return false;

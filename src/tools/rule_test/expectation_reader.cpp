@@ -99,6 +99,10 @@ class ExpectationReader {
       return read_.fail(Code::kSyntax, subject->span,
                         subject->text + " comes after the name that it is about",
                         "write " + std::string(word.text) + " " + subject->text);
+    if (std::ranges::find(kVerbs, std::string_view(subject->text), &Verb::word) != kVerbs.end())
+      return read_.fail(Code::kSyntax, subject->span,
+                        "a name is missing in front of " + subject->text,
+                        "write what it is about, as in CameraDead DETECTED");
     if (!knows(subject->text)) {
       const std::string near = names_.closest_subject(subject->text);
       return read_.fail(Code::kUnknownName, subject->span,

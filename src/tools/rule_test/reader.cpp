@@ -287,6 +287,10 @@ std::vector<Name> rule_files(const Source& source, std::vector<Diagnostic>& diag
       break;
     }
     do {
+      if (const Token next = s.peek(); next.is(",")) {
+        read.fail_token(next, "the path of a rule file", "");
+        break;
+      }
       auto name = read.name_or_text(s, "the path of a rule file");
       if (!name) break;
       if (name->text.starts_with("\u201c") || name->text.starts_with("\u2018")) {

@@ -323,8 +323,10 @@ bool SetupReader::is_subject_of_at(const Scanner& s) {
     return read_.fail(Code::kSyntax, word.span,
                       "a component is missing in front of '" + std::string(word.text) + "'",
                       "write for example AT 2s camera " + incident);
+  ahead.take('(');  // "kill(camera)"
   const syntax::Name component = ahead.next_name();
-  const Span span{word.span.begin, component.span.end};
+  ahead.take(')');
+  const Span span{word.span.begin, ahead.taken()};
   const std::string meant = component.text + " " + incident;
   return read_.fail(Code::kSyntax, span, "the component stands in front of what happens to it",
                     "write " + meant, Edit{span, meant});

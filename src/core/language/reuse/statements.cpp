@@ -13,6 +13,11 @@ constexpr const char* kHowToUse =
 std::optional<syntax::TemplateParameter> parameter(LineReader& read, Scanner& s) {
   auto name = read.declared_name(s, "a parameter's name");
   if (!name) return std::nullopt;
+  if (is_type_word(name->text) && s.peek().kind == Token::Kind::kIdentifier) {
+    read.fail(Code::kSyntax, name->span, "a parameter has no type", "remove '" + name->text + "'",
+              Edit{{name->span.begin, s.peek().span.begin}, ""});
+    return std::nullopt;
+  }
   syntax::TemplateParameter out{std::move(*name), {}};
   if (s.peek().is(":")) {
     read.fail(Code::kSyntax, s.peek().span, "expected '=', not ':'",
