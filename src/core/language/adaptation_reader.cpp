@@ -162,7 +162,7 @@ class AdaptationReader {
       return false;
     const Span span{first.span.begin, second.span.end};
     const std::string meant = second.text + " " + first.text;
-    return !read_.fail(Code::kSyntax, span, "the parameter stands in front of the topic",
+    return !read_.fail(Code::kBadRosName, span, "the parameter stands in front of the topic",
                        "write change_communication " + meant, Edit{span, meant});
   }
 
@@ -173,7 +173,7 @@ class AdaptationReader {
         !is_component_reference(parameter.text.substr(0, dot)))
       return false;
     const std::string meant = parameter.text.substr(dot + 1);
-    return !read_.fail(Code::kSyntax, parameter.span, "a parameter is named without its node",
+    return !read_.fail(Code::kBadRosName, parameter.span, "a parameter is named without its node",
                        "write " + meant, Edit{parameter.span, meant});
   }
 
@@ -186,7 +186,7 @@ class AdaptationReader {
       return false;
     const Span span{first.span.begin, second.span.end};
     const std::string meant = std::string(second.text) + " " + first.text;
-    return !read_.fail(Code::kSyntax, span, "the parameter stands in front of its value",
+    return !read_.fail(Code::kTypeMismatch, span, "the parameter stands in front of its value",
                        "write " + std::string(keyword(adaptation.type)) + " " + meant,
                        Edit{span, meant});
   }

@@ -160,8 +160,8 @@ class ExpressionParser {
     const Span span{left.span.begin, second.span.end};
     const std::string number(text_of(left.span));
     return Diagnostic{
-        Code::kSyntax,     Severity::kError,  span, "rates are in Hz and have no unit",
-        "write " + number, Edit{span, number}};
+        Code::kTypeMismatch, Severity::kError,  span, "rates are in Hz and have no unit",
+        "write " + number,   Edit{span, number}};
   }
 
   std::nullopt_t unfinished(const Token& op) {
