@@ -92,9 +92,11 @@ bool is_same_input(const Input& a, const Input& b) {
 bool Symbols::first_declaration(const syntax::Name& name, const char* what) {
   const auto component = place_of(name.text, rules_.components, components_);
   const bool is_component = component && rules_.components[*component].declared;
-  if (!is_component && !known_signal(name.text) && !constants_.contains(name.text)) return true;
+  const bool is_constant = constants_.contains(name.text);
+  if (!is_component && !is_constant && !known_signal(name.text)) return true;
+  const std::string kind = is_component ? "component" : is_constant ? "constant" : "signal";
   diagnostics_.push_back({Code::kDuplicateName, Severity::kError, name.span,
-                          "'" + name.text + "' is declared already",
+                          "'" + name.text + "' is a " + kind + " already",
                           std::string("give this ") + what + " another name"});
   return false;
 }
