@@ -58,6 +58,7 @@ Ended ended(std::vector<std::string> words) {
         CLI::App* note = app.add_subcommand("note", "Note");
         note->add_option("--reason", format, "Why");
         note->add_option("--lines", port, "How many");
+        note->add_option("--since", format, "Since");
         note->add_option("--journal", file, "Where");
         note->add_option("--file", file, "What")->check(CLI::ExistingFile);
         note->callback([&code] { code = fail("the note is empty", kUsage); });
@@ -118,6 +119,8 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"test", "a", "--for", "3", "s"}, "--for: a duration is one word; write --for 3s\n"},
       {{"test", "a", "--for", "1d"}, "--for: '1d' is not a duration; write 24h\n"},
       {{"note", "--limit", "3"}, "note has no option '--limit'; did you mean '--lines'?\n"},
+      {{"note", "--since", "5", "minutes"},
+       "--since: a duration is one word; write --since 5min\n"},
       {{"note", "3"}, "'3' is one argument too many; did you mean --lines 3?\n"},
       {{"note", "a.journal"}, "did you mean --journal 'a.journal'?\n"},
       {{"check", "--werror", "a"}, "check has no option '--werror'; write --fail-on warning\n"},
@@ -134,6 +137,10 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"check", "--seconds", "3"}, "check has no option '--seconds'; did you mean '--wait'?\n"},
       {{"--robot", "check"}, "'--robot' stands in front of the command; write it behind check\n"},
       {{"end"}, "there is no command 'end'; did you mean 'end-all'?\n"},
+      {{"culprit", "check"}, "there is no command 'culprit'; write 'culprit' once\n"},
+      {{"note", "-f", "a"}, "note has no option '-f'"},
+      {{"check", "--pair", "a", "b", "--pair", "c", "d"}, "--pair takes at most 2 values\n"},
+      {{"test", "--timeout", "3", "a"}, "did you mean '--for'?\n"},
       {{"lint"}, "there is no command 'lint'; did you mean 'check'?\n"},
       {{"note", "hello"}, "'hello' is one argument too many; note takes no arguments\n"},
       {{"note", "it is hot"}, "; did you mean --reason 'it is hot'?\n"},

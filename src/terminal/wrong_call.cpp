@@ -95,7 +95,9 @@ std::string_view option_of_other_tools(std::string_view option,
       {"--only", "--filter"},   {"--follow", "--for"},       {"--node", "--component"},
       {"--faults", "--kinds"},  {"--component", "--only"},   {"--live", "--robot"},
       {"-n", "--dry-run"},      {"--token", "--token-file"}, {"--level", "--kind"},
-      {"--limit", "--lines"},   {"-c", "--config"}};
+      {"--limit", "--lines"},   {"-c", "--config"},          {"--host", "--address"},
+      {"--name", "--filter"},   {"-k", "--filter"},          {"--last", "--since"},
+      {"--timeout", "--for"},   {"--baseline", "--against"}};
   return translated(option, kWords, known);
 }
 
@@ -123,6 +125,8 @@ std::string_view advice_about(std::string_view option, std::string_view command)
                                                   {"--watch", "top", "leave it out: top is live"},
                                                   {"--output", "check", kFile},
                                                   {"-o", "check", kFile},
+                                                  {"-d", "run", kService},
+                                                  {"-d", "", kDomain},
                                                   {"--domain", "", kDomain},
                                                   {"--domain-id", "", kDomain},
                                                   {"--verbose", "run", kEvents},
@@ -208,11 +212,13 @@ std::string positional_called(const CLI::App& command, const std::string& option
   std::transform(upper.begin(), upper.end(), upper.begin(),
                  [](unsigned char c) { return std::toupper(c); });
   const bool is_name = is_one_of(option, {"--component", "--rule"});
-  const bool is_file = is_one_of(option, {"--file", "--input", "--rules"});
+  const bool is_file = is_one_of(option, {"--file", "--input", "--rules", "-f"});
+  const bool is_subject = is_one_of(option, {"--code", "--term"});
   for (const CLI::Option* each : command.get_options()) {
     if (!each->get_positional()) continue;
     const std::string name = each->get_name(true);
-    if ("--" + name == upper || (is_name && name == "NAME") || (is_file && name == "RULES"))
+    if ("--" + name == upper || (is_name && name == "NAME") || (is_file && name == "RULES") ||
+        (option == "--bag" && name == "JOURNAL") || (is_subject && name == "WHAT"))
       return name;
   }
   return "";
@@ -274,6 +280,7 @@ std::string_view only_with_first_part(std::string_view word,
 std::string remedy_of_command(const CLI::App& app, std::string_view word) {
   const std::vector<std::string_view> known = names_of(commands_in(app));
   if (word == "version") return "; did you mean '--version'?";
+  if (word == app.get_name()) return "; write '" + app.get_name() + "' once";
   if (const auto ours = command_of_other_tools(word, known); !ours.empty())
     return "; did you mean '" + std::string(ours) + "'?";
   if (const auto whole = only_with_first_part(word, known); !whole.empty())
@@ -449,6 +456,28 @@ std::optional<std::string> slip_in_word(const CLI::App& command, int argc, char*
   return std::nullopt;
 }
 
+// Too few or too many values of an option; nothing: `text` says something else.
+std::optional<std::string> wrong_count(const std::string& text, const CLI::App& command) {
+  constexpr std::string_view kOneMissing = ": 1 required ";
+  if (const auto at = text.find(kOneMissing); at != std::string::npos)
+    return text.substr(0, at) + " needs a value" + kind_of_value(command, text.substr(0, at));
+  constexpr std::string_view kTwice = ": At Most 1 required but received";
+  if (const auto at = text.find(kTwice); at != std::string::npos)
+    return text.substr(0, at) + " is given more than once; give it once";
+  constexpr std::string_view kTooMany = ": At Most ";
+  if (const auto at = text.find(kTooMany); at != std::string::npos) {
+    const std::string most = text.substr(at + kTooMany.size());
+    return text.substr(0, at) + " takes at most " + most.substr(0, most.find(' ')) + " values";
+  }
+  constexpr std::string_view kMoreMissing = ": At least ";
+  if (const auto at = text.find(kMoreMissing); at != std::string::npos)
+    return text.substr(0, at) + " needs at least " +
+           text.substr(at + kMoreMissing.size(),
+                       text.find(' ', at + kMoreMissing.size()) - at - kMoreMissing.size()) +
+           " values";
+  return std::nullopt;
+}
+
 // The mistake in the words of people. CLI11 has its own for each.
 std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const CLI::App& command,
                      int argc, char** argv) {
@@ -477,18 +506,7 @@ std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const CL
     if (equals != std::string::npos)
       return rest.substr(0, equals) + ": '" + printable(rest.substr(equals + 3)) + "' is no number";
   }
-  constexpr std::string_view kOneMissing = ": 1 required ";
-  if (const auto at = text.find(kOneMissing); at != std::string::npos)
-    return text.substr(0, at) + " needs a value" + kind_of_value(command, text.substr(0, at));
-  constexpr std::string_view kTwice = ": At Most 1 required but received";
-  if (const auto at = text.find(kTwice); at != std::string::npos)
-    return text.substr(0, at) + " is given more than once; give it once";
-  constexpr std::string_view kMoreMissing = ": At least ";
-  if (const auto at = text.find(kMoreMissing); at != std::string::npos)
-    return text.substr(0, at) + " needs at least " +
-           text.substr(at + kMoreMissing.size(),
-                       text.find(' ', at + kMoreMissing.size()) - at - kMoreMissing.size()) +
-           " values";
+  if (auto count = wrong_count(text, command)) return *count;
   return text;
 }
 
@@ -508,7 +526,8 @@ std::optional<std::string> duration_of_two_words(const CLI::App& command, int ar
     const std::string option = is_joined ? word.substr(0, equals) : argv[i - 1];
     const std::string number = is_joined ? word.substr(equals + 1) : word;
     const CLI::Option* known = command.get_option_no_throw(option);
-    const bool is_duration = known != nullptr && value_of(*known) == "DURATION";
+    const bool is_duration =
+        known != nullptr && (value_of(*known) == "DURATION" || option == "--since");
     const bool is_number =
         !number.empty() && number.find_first_not_of("0123456789.") == std::string::npos;
     const std::string unit = unit_of_words(argv[i + 1]);
