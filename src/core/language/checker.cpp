@@ -329,6 +329,7 @@ class Checker {
     check_topics_as_nodes(file_, diagnostics_);
     check_topics_as_components(file_, rules_, diagnostics_);
     check_nodes_as_topics(file_, rules_, diagnostics_);
+    check_rules_as_values(file_, diagnostics_);
     check_unused(file_, rules_, diagnostics_);
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);

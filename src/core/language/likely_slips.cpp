@@ -6,6 +6,8 @@
 #include <set>
 #include <string_view>
 
+#include "language/functions.h"
+
 namespace culprit {
 namespace {
 
@@ -109,6 +111,28 @@ void for_each_topic(const syntax::Expression& e,
   for (const syntax::Expression& child : e.children) for_each_topic(child, take);
 }
 
+// Calls `take` with each name in `e` that is a value by itself.
+void for_each_value(const syntax::Expression& e,
+                    const std::function<void(const syntax::Name&)>& take) {
+  if (e.kind == syntax::Expression::Kind::kName) take(e.name);
+  const FunctionInfo* function =
+      e.kind == syntax::Expression::Kind::kCall ? find_function(e.name.text) : nullptr;
+  for (std::size_t i = 0; i < e.children.size(); ++i) {
+    const bool is_value = function == nullptr || i >= function->arguments.size() ||
+                          function->arguments[i] == Argument::kExpression;
+    if (is_value) for_each_value(e.children[i], take);
+  }
+}
+
+// Of constants, signals and groups.
+std::set<std::string_view> names_of_values(const syntax::File& file) {
+  std::set<std::string_view> names;
+  for (const auto& each : file.constants) names.insert(each.name.text);
+  for (const auto& each : file.signals) names.insert(each.name.text);
+  for (const auto& each : file.groups) names.insert(each.name.text);
+  return names;
+}
+
 }  // namespace
 
 void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
@@ -202,6 +226,34 @@ void check_nodes_as_topics(const syntax::File& file, const RuleSet& rules,
            "if it was exchanged with the component that the rule adapts, write each in the other's "
            "place"});
     });
+  }
+}
+
+void check_rules_as_values(const syntax::File& file, std::vector<Diagnostic>& diagnostics) {
+  const std::set<std::string_view> values = names_of_values(file);
+  std::set<std::string_view> names;
+  for (const syntax::Rule& rule : file.rules) {
+    // A rule may be called like the signal that it reads.
+    bool is_signal = values.contains(rule.name.text);
+    if (rule.trigger)
+      for_each_value(*rule.trigger, [&](const syntax::Name& value) {
+        is_signal = is_signal || value.text == rule.name.text;
+      });
+    if (!is_signal) names.insert(rule.name.text);
+  }
+  const auto check = [&](const syntax::Name& value) {
+    if (!names.contains(value.text)) return;
+    diagnostics.push_back({Code::kUnknownName, Severity::kWarning, value.span,
+                           "'" + value.text + "' is a rule, and is read as a signal here",
+                           "write the condition of its TRIGGER, or declare a SIGNAL of this name"});
+  };
+  for (const syntax::Interlock& interlock : file.interlocks)
+    for_each_value(interlock.condition, check);
+  for (const syntax::Rule& rule : file.rules) {
+    if (rule.trigger) for_each_value(*rule.trigger, check);
+    for (const syntax::Strategy& strategy : rule.strategies) {
+      if (strategy.when) for_each_value(*strategy.when, check);
+    }
   }
 }
 
