@@ -280,7 +280,7 @@ int run(const RunOptions& options) {
   const auto trusted = live::trust_state(options.state_path(), journal);
   if (!trusted) return fail(trusted.error());
   live::make_private(journal);
-  say(stderr, "{}{}", rules->remarks, remark_on_folder(options.journal));
+  say(stderr, "{}{}{}", rules->remarks, remark_on_folder(options.journal), options.remarks());
   auto session = options.session(rules->rules);
   if (!session) return fail(session.error(), kUsage);
   std::optional<live::NodeNameClaim> node_name;

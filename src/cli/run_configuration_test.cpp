@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/test_folder.h"
+#include "cli/run_options.h"
 
 namespace culprit::cli {
 namespace {
@@ -159,6 +160,17 @@ TEST_F(RunConfigurationFile, MayHaveEachPrintedOptionWithoutItsCommentSign) {
   }
   EXPECT_GT(count, 20);
   EXPECT_THAT(result->printed, HasSubstr("\n# web-cert is not set\n"));
+}
+
+TEST(RunOptions, SayWhichHaveNoEffect) {
+  RunOptions options;
+  EXPECT_EQ(options.remarks(), "");
+  options.fleet.context = "lab";
+  EXPECT_THAT(options.remarks(), HasSubstr("--fleet-context have no effect without --fleet\n"));
+  options.fleet.address = "postgresql://hub/fleet";
+  EXPECT_EQ(options.remarks(), "");
+  options.governor.backoff_seconds = 120;
+  EXPECT_THAT(options.remarks(), HasSubstr("--backoff-most limits the back-off to 1min"));
 }
 
 TEST_F(RunConfigurationFile, LeavesAWrongLineToItsParser) {

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cctype>
 
+#include <fmt/core.h>
+
 #include "base/environment.h"
 #include "base/name_grammar.h"
+#include "base/units.h"
 #include "live/link_program.h"
 #include "live/robot_survey.h"
 #include "live/run_journal.h"
@@ -54,6 +57,16 @@ Expected<live::LiveSession::Options> RunOptions::session(const RuleSet& rule_set
   out.journal = journal_path(rule_set);
   if (no_journal) out.no_journal = "of --no-journal";
   return out;
+}
+
+std::string RunOptions::remarks() const {
+  std::string lines;
+  if (fleet.address.empty() && (!fleet.name.empty() || !fleet.context.empty()))
+    lines += "culprit: --fleet-name and --fleet-context have no effect without --fleet\n";
+  if (governor.backoff_seconds > governor.backoff_most_seconds)
+    lines += fmt::format("culprit: --backoff-most limits the back-off to {}; --backoff is longer\n",
+                         to_string(from_seconds(governor.backoff_most_seconds)));
+  return lines;
 }
 
 namespace {

@@ -51,6 +51,8 @@ struct RunOptions {
   std::filesystem::path journal_path(const RuleSet& rules) const;
   // Errors: the environment names no DDS domain, or the governor's options are wrong.
   Expected<live::LiveSession::Options> session(const RuleSet& rules) const;
+  // A line for each option that has no effect beside the others; empty: all have one.
+  std::string remarks() const;
 
  private:
   void add_ways(CLI::App& command);
