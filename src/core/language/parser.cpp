@@ -102,7 +102,7 @@ class Parser {
     if (has_placeholder(s)) is_good_head = false;
     if (has_colon(s)) is_good_head = false;  // it is taken, so that the line can be read
     // The expansion takes only the words as they are.
-    if (!is_good_head && is_of_reuse(meant->keyword)) return reuse_was_meant(meant->keyword);
+    if (!is_good_head && is_of_reuse(meant->keyword)) return reuse_was_meant(meant->keyword, s);
     const Scanner behind_keyword = s;
     const bool is_good = (this->*meant->parse)(s) && read_.line_ends(s);
     // One mistake, one message: the statement is read as it was meant, so that the lines that
@@ -133,9 +133,9 @@ class Parser {
   }
 
   // One mistake, one message: a TEMPLATE ends where its END was meant.
-  void reuse_was_meant(std::string_view keyword) {
+  void reuse_was_meant(std::string_view keyword, const Scanner& behind) {
     rules_.broken();
-    if (keyword != "END" || !template_) return;
+    if (keyword != "END" || !template_ || !behind.at_end()) return;
     rules_.end_rule();
     close_template(line_.begin, behind_line());
   }
