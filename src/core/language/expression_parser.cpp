@@ -416,7 +416,7 @@ class ExpressionParser {
     return value_is_missing(token);
   }
 
-  // What people write where they mean to go on later.
+  // A placeholder that people leave for later.
   static bool is_reminder(std::string_view word) {
     return word == "TODO" || word == "FIXME" || word == "TBD" || word == "XXX";
   }

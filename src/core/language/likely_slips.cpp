@@ -124,7 +124,7 @@ void for_each_value(const syntax::Expression& e,
   }
 }
 
-// Of constants, signals and groups.
+// The names of constants, signals and groups.
 std::set<std::string_view> names_of_values(const syntax::File& file) {
   std::set<std::string_view> names;
   for (const auto& each : file.constants) names.insert(each.name.text);

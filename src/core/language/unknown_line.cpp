@@ -78,7 +78,7 @@ std::optional<Remedy> remedy_of_symbol(const UnknownLine& line, const Token& hea
   return std::nullopt;
 }
 
-// What a rule of other tools has, and one of ours has not; empty: `upper` is none of these.
+// The remedy for a part that rules of other tools have; empty: `upper` names none.
 std::string_view remedy_of_other_part(std::string_view upper) {
   constexpr std::string_view kText = "write # in front of it: a rule has no text of its own";
   constexpr std::string_view kSwitch =
