@@ -102,9 +102,9 @@ std::string candidates_of(const Json& body) {
   if (!candidates.is_array() || candidates.empty()) return "";
   std::string out = "\nStrategies compared\n";
   for (const Json& each : candidates) {
-    std::string numbers = fmt::format("cost {:.2f}", journal::number_of(each, "cost"));
+    std::string numbers = fmt::format("relative cost {:.2f}", journal::number_of(each, "cost"));
     if (each.is_object() && each.contains("resolves"))
-      numbers += fmt::format(", resolves it with {:.0f} %, value {:.2f}",
+      numbers += fmt::format(", resolves it with {:.0f} %, relative value {:.2f}",
                              100 * journal::number_of(each, "resolves"),
                              journal::number_of(each, "value"));
     const std::string because = text_of(each, "because");

@@ -102,7 +102,7 @@ TEST_F(Plan, TakesTheSwitchesOfRun) {
   ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--planner", "paper", "--no-impact",
                   "--no-dependencies"}),
             kOk);
-  EXPECT_THAT(out, HasSubstr("would redeploy camera (rgb_redeploy, cost 0.10)"));
+  EXPECT_THAT(out, HasSubstr("would redeploy camera (rgb_redeploy, relative cost 0.10)"));
   EXPECT_THAT(out, HasSubstr("would redeploy segmentation"));
 }
 

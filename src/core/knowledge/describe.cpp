@@ -49,8 +49,8 @@ class Describer {
                                      [&](const Candidate& c) { return c.strategy == e.strategy; });
     std::string reason = strategy.name;
     if (chosen != e.candidates.end()) {
-      if (chosen->value > 0) reason += ", value " + two_decimals(chosen->value);
-      reason += ", cost " + two_decimals(chosen->cost);
+      if (chosen->value > 0) reason += ", relative value " + two_decimals(chosen->value);
+      reason += ", relative cost " + two_decimals(chosen->cost);
     }
     // The component that a last resort adapts is not the cause.
     if (strategy.is_last_resort)

@@ -39,8 +39,8 @@ std::string describe(const Adaptation& adaptation, const RuleSet& rules);
 std::vector<std::string> action_list(const Strategy& strategy, const RuleSet& rules);
 std::string actions_of(const Strategy& strategy, const RuleSet& rules);
 
-// "camera is responsible for RGBDead and SegmentationDead: restart camera (cost 0.70)". May be
-// empty: nothing worth a line.
+// "camera is held responsible for RGBDead: restart camera (rgb_restart, relative cost 0.70)". May be empty: nothing
+// worth a line.
 std::string describe(const Event& event, const RuleSet& rules);
 
 // Why a candidate was not chosen: "sensor_fusion depends on camera, which may be the cause

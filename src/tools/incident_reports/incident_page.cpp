@@ -172,7 +172,7 @@ std::string decisions(const std::vector<Json>& events) {
     out += evidence_of(event);
     std::string rows;
     for (const Json& each : candidates) rows += candidate_row(event, each);
-    out += table_of({"strategy", "cost", "why, or why not"}, rows);
+    out += table_of({"strategy", "relative cost", "why, or why not"}, rows);
   }
   return out.empty() ? "<p>No decisions.</p>\n" : out;
 }

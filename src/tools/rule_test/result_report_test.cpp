@@ -15,7 +15,7 @@ TEST(Report, SaysWhatWasExpectedAndWhatHappenedInstead) {
     what happened:
        2.000  camera is lost: killed by signal 9
        2.010  CameraDead detected (ERROR): camera is known to be down, killed by signal 9
-       2.010  camera is held responsible for CameraDead: redeploy camera (camera_redeploy, cost 1.10)
+       2.010  camera is held responsible for CameraDead: redeploy camera (camera_redeploy, relative cost 1.10)
        2.250  FusionDead detected (ERROR)
        2.250  FusionDead waits: it depends on camera, which may be the cause (CameraDead)
        2.320  camera is there (process 103)
