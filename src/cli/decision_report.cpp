@@ -55,12 +55,20 @@ Expected<std::optional<Entry>> decision_at(const journal::Reader& journal, std::
   }
 }
 
+bool is_answer(const Json& piece) {
+  return text_of(piece, "source") == to_string(EvidenceSource::kAnswer);
+}
+
+// " 1.20 s"; empty if it is not known.
+std::string age_of(const Json& piece) {
+  if (!piece.is_object() || !piece.contains("age_ns")) return "";
+  return fmt::format(" {:.2f} s", seconds(Duration(journal::integer_of(piece, "age_ns"))));
+}
+
 std::string evidence_line(const Json& piece) {
-  std::string age;
-  if (piece.is_object() && piece.contains("age_ns"))
-    age = fmt::format(", for {:.2f} s", seconds(Duration(journal::integer_of(piece, "age_ns"))));
-  return fmt::format("{}{} ({}, {:+.1f})", text_of(piece, "text"), age, text_of(piece, "source"),
-                     journal::number_of(piece, "log_odds"));
+  const std::string age = age_of(piece);
+  return fmt::format("{}{}{} ({}, {:+.1f})", text_of(piece, "text"), age.empty() ? "" : ", for",
+                     age, text_of(piece, "source"), journal::number_of(piece, "log_odds"));
 }
 
 std::string suspects_of(const Json& body) {
@@ -71,9 +79,24 @@ std::string suspects_of(const Json& body) {
     out += fmt::format("  {:>3.0f} %  {}, by {}\n", 100 * journal::number_of(each, "probability"),
                        text_of(each, "component"), text_of(each, "failure"));
     const Json evidence = each.is_object() ? each.value("evidence", Json::array()) : Json::array();
-    for (const Json& piece : evidence) out += "           " + evidence_line(piece) + "\n";
+    for (const Json& piece : evidence) {
+      if (!is_answer(piece)) out += "           " + evidence_line(piece) + "\n";
+    }
   }
   return out;
+}
+
+std::string answers_of(const Json& body) {
+  std::string out;
+  for (const Json& suspect : body.value("suspects", Json::array())) {
+    const Json evidence =
+        suspect.is_object() ? suspect.value("evidence", Json::array()) : Json::array();
+    for (const Json& piece : evidence) {
+      if (is_answer(piece))
+        out += "  " + text_of(piece, "text") + "," + age_of(piece) + " before the decision\n";
+    }
+  }
+  return out.empty() ? "" : "\nAsked and answered\n" + out;
 }
 
 std::string hinges_of(const Json& body) {
@@ -177,7 +200,7 @@ Expected<std::string> explain_decision(const journal::Reader& journal, std::int6
   std::string out =
       fmt::format("Row {}, {}\n{}\n", entry.id, local_time(entry.at), text_of(body, "text"));
   if (!is_decision(entry, body)) return out + to_indented(body) + "\n";
-  out += suspects_of(body) + hinges_of(body) + candidates_of(body);
+  out += suspects_of(body) + answers_of(body) + hinges_of(body) + candidates_of(body);
   if (!sequel.empty()) out += "\nOutcome\n";
   for (const Entry& each : sequel) {
     if (const std::string line = log_line(each); !line.empty()) out += line + "\n";

@@ -46,6 +46,15 @@ TEST(DecisionReport, SaysNothingOfItWhereNothingWould) {
   EXPECT_THAT(out, Not(HasSubstr("What would change")));
 }
 
+TEST(DecisionReport, SaysWhatWasAskedAndAnswered) {
+  const std::string out = explained(
+      R"({"source":"kernel","text":"camera exited","age_ns":1200000000,"log_odds":2.9},)"
+      R"({"source":"answer","text":"fusion answered","age_ns":200000000,"log_odds":0.0})");
+  EXPECT_THAT(out, HasSubstr("camera exited, for 1.20 s (kernel, +2.9)\n\n"
+                             "Asked and answered\n"
+                             "  fusion answered, 0.20 s before the decision\n"));
+}
+
 TEST(DecisionReport, SaysOnceWhatWouldEndTheWait) {
   const std::string waits =
       R"("excluded":"suspect","because":"it depends on camera","ends":"if camera does not answer)"

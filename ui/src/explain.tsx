@@ -20,13 +20,18 @@ export const kWords: Record<Criticality, string> = {
   NON_CRITICAL: 'non-critical',
 }
 
+const kNanosecond = 1e-9 // s
 const signed = (log_odds: number) => `${log_odds < 0 ? '−' : '+'}${Math.abs(log_odds).toFixed(1)}`
 
+// Of culprit's own questions. They are shown by themselves: an answer is no onset, and has no weight.
+const isAnswer = ({ source }: Evidence) => source === 'answer'
+
 function EvidenceList({ evidence }: { evidence: Evidence[] }) {
-  if (evidence.length === 0) return null
+  const weighed = evidence.filter((each) => !isAnswer(each))
+  if (weighed.length === 0) return null
   return (
     <ul class="evidence">
-      {evidence.map((each) => (
+      {weighed.map((each) => (
         <li>
           {each.text}
           {each.age_ns ? `, for ${lasting(each.age_ns / 1e9)}` : ''}{' '}
@@ -36,6 +41,23 @@ function EvidenceList({ evidence }: { evidence: Evidence[] }) {
         </li>
       ))}
     </ul>
+  )
+}
+
+function Answers({ decision }: { decision: ManagerEvent }) {
+  const answers = (decision.suspects ?? []).flatMap(({ evidence }) => (evidence ?? []).filter(isAnswer))
+  if (answers.length === 0) return null
+  return (
+    <>
+      <h3>Asked and answered</h3>
+      <ul class="evidence">
+        {answers.map(({ text, age_ns }) => (
+          <li>
+            {text}, {lasting((age_ns ?? 0) * kNanosecond)} before the decision
+          </li>
+        ))}
+      </ul>
+    </>
   )
 }
 
@@ -61,7 +83,7 @@ function WhatWouldChange({ decision }: { decision: ManagerEvent }) {
   )
 }
 
-export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: string }) {
+function Suspects({ decision, rule }: { decision: ManagerEvent; rule: string }) {
   const suspects = decision.suspects ?? []
   if (suspects.length === 0) return null
   return (
@@ -90,13 +112,11 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
 
 export const kCostUnit = 'Expected effort, relative to the slowest strategy of the rules: no unit. Of the paper’s planner: 0 to 2.'
 
-const kNanosecond = 1e-9 // s
-
 // Causes begin before their effects: what began when, of all suspects on one axis that ends with the decision.
 function Onsets({ decision }: { decision: ManagerEvent }) {
   const onsets = (decision.suspects ?? [])
     .flatMap(({ component, evidence }) =>
-      (evidence ?? []).flatMap(({ text, age_ns, log_odds }) => (age_ns === undefined ? [] : [{ component, text, age: age_ns * kNanosecond, isFor: log_odds >= 0 }]))
+      (evidence ?? []).flatMap((each) => (each.age_ns === undefined || isAnswer(each) ? [] : [{ component, text: each.text, age: each.age_ns * kNanosecond, isFor: each.log_odds >= 0 }]))
     )
     .sort((a, b) => b.age - a.age)
   if (onsets.length < 2) return null
@@ -132,7 +152,7 @@ function Onsets({ decision }: { decision: ManagerEvent }) {
 export const costOf = ({ cost, excluded }: { cost: number; excluded: unknown }) =>
   excluded && cost === 0 ? '–' : cost.toFixed(2)
 
-export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: string | null }) {
+function Candidates({ list, chosen }: { list: Candidate[]; chosen?: string | null }) {
   if (list.length === 0) return null
   return (
     <table class="candidates">
@@ -161,6 +181,19 @@ export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: strin
   )
 }
 
+// All that a decision rests on.
+export function Reasons({ decision }: { decision: ManagerEvent }) {
+  return (
+    <>
+      <Suspects decision={decision} rule={decision.rule!} />
+      <Answers decision={decision} />
+      <WhatWouldChange decision={decision} />
+      <Onsets decision={decision} />
+      <Candidates list={decision.candidates ?? []} chosen={decision.type === 'strategy_chosen' ? decision.strategy : null} />
+    </>
+  )
+}
+
 // The current action and the next one: for the present only, since the past has its events.
 const kSaidByNext = ['approval_asked', 'action_held_back'] // events
 function Next({ incident }: { incident: Incident }) {
@@ -184,13 +217,7 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
   return (
     <details class="why" open={isOpen}>
       <summary>Possible causes and repairs</summary>
-      <Suspects decision={decision} rule={failure.rule} />
-      <WhatWouldChange decision={decision} />
-      <Onsets decision={decision} />
-      <Candidates
-        list={decision.candidates ?? []}
-        chosen={decision.type === 'strategy_chosen' ? decision.strategy : null}
-      />
+      <Reasons decision={decision} />
     </details>
   )
 }

@@ -5,7 +5,7 @@ import { useEffect, useRef } from 'preact/hooks'
 import { fileAt } from './api'
 import { byTheClock, lasting, when } from './clock'
 import { download } from './download'
-import { Candidates, Suspects } from './explain'
+import { Reasons } from './explain'
 import { nowByTheClock } from './freshness'
 import { viewOf } from './history'
 import { listed } from './incidents'
@@ -108,8 +108,7 @@ function Decisions() {
           <summary>
             <time>{byTheClock(event.clock!, 2)}</time> {event.text}
           </summary>
-          <Suspects decision={event} rule={event.rule!} />
-          <Candidates list={event.candidates ?? []} chosen={event.type === 'strategy_chosen' ? event.strategy : null} />
+          <Reasons decision={event} />
         </details>
       ))}
     </section>

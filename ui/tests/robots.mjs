@@ -64,10 +64,12 @@ const kSuspects = [
   { component: 'camera', failure: 'RGBDead', probability: 0.97, evidence: [evidence('kernel', 'camera exited', 0.02, 5.1), evidence('alarm', 'RGBDead fires', 0.01, 1.2)] },
   { component: 'fusion', failure: 'FusionSilent', probability: 0.03, evidence: [evidence('measured', 'fusion answered', 0.004, -2.3)] },
 ]
-// As above, where the decision hinges on one piece of evidence, and a wait has an end.
+// As above, where the decision hinges on one piece of evidence, a wait has an end, and a supplier was asked.
+const kAnswered = evidence('answer', 'depth answered', 0.02, 0)
+const withAnswer = (suspects) => suspects.map((each, place) => (place === 0 ? { ...each, evidence: [...each.evidence, kAnswered] } : each))
 const kEnd = 'if camera does not answer within 0.60 s, camera is held responsible'
 const ending = (candidates) => candidates?.map((each) => (each.excluded ? { ...each, excluded: { ...each.excluded, ends: kEnd } } : each))
-export const hinging = (state) => ({ ...state, events: state.events.map((e) => (e.suspects ? { ...e, candidates: ending(e.candidates), suspects: kSuspects.map((s) => ({ ...s, evidence: s.evidence.map((each) => (each.text === 'camera exited' ? { ...each, without: 'fusion' } : each)) })) } : e)) })
+export const hinging = (state) => ({ ...state, events: state.events.map((e) => (e.suspects ? { ...e, candidates: ending(e.candidates), suspects: withAnswer(kSuspects.map((s) => ({ ...s, evidence: s.evidence.map((each) => (each.text === 'camera exited' ? { ...each, without: 'fusion' } : each)) }))) } : e)) })
 const because = (failure) => ({ condition: 'dependency', component: 'camera', failure, text: `camera may be the cause, by ${failure}` })
 const candidate = (name, excluded = null) => ({ strategy: name, impact: 5, cost: excluded ? 0 : 0.55, value: 0.9, resolves: 0.9, excluded })
 const kAll = [candidate('rgb_restart', { condition: 'tried', text: 'it was tried already' }), candidate('rgb_redeploy')]
@@ -131,16 +133,16 @@ export const kHealed = { events: kHealing, control: {}, state: {} }
 
 // The journal's incidents of it, and of a day before.
 const idOf = (clock) => Math.round(clock * 1000).toString(36)
-const incident = (clock, more) => ({ id: idOf(clock), first: 10, last: 20, clock, seconds: 3, over: true, cut: false, given_up: false, worst: 'ERROR',
+export const incidentAt = (clock, more) => ({ id: idOf(clock), first: 10, last: 20, clock, seconds: 3, over: true, cut: false, given_up: false, worst: 'ERROR',
   causes: ['camera'], rules: ['RGBDead', 'FusionSilent', 'SegmentationBad'], consequences: ['FusionSilent', 'SegmentationBad'], helped: ['rgb_redeploy'], ...more })
 const kBrokenAt = kBegan + kBroken
 const kRecording = 'rover_20261125T140322.042Z_FusionSilent.mcap'
 export const kIncidents = [
-  incident(kBrokenAt + 0.01, {}),
-  ...Array.from({ length: 9 }, (_, n) => 8 - n).map((i) => incident(kBrokenAt - 80_000 + i * 8000, { first: 4, last: 4, seconds: 2 + i, worst: i % 2 ? 'WARNING' : 'ERROR', causes: [i % 3 ? 'segmentation' : 'camera'], rules: ['SegmentationBad'], consequences: [], helped: ['recalibration'] })),
-  incident(kBrokenAt - 86_000, { first: 1, last: 3, seconds: 7200, causes: ['fusion'], rules: ['FusionSilent'], consequences: [], helped: [], given_up: true, recordings: [{ name: kRecording, path: `/var/lib/culprit/recordings/${kRecording}`, bytes: 1_200_000 }] }),
+  incidentAt(kBrokenAt + 0.01, {}),
+  ...Array.from({ length: 9 }, (_, n) => 8 - n).map((i) => incidentAt(kBrokenAt - 80_000 + i * 8000, { first: 4, last: 4, seconds: 2 + i, worst: i % 2 ? 'WARNING' : 'ERROR', causes: [i % 3 ? 'segmentation' : 'camera'], rules: ['SegmentationBad'], consequences: [], helped: ['recalibration'] })),
+  incidentAt(kBrokenAt - 86_000, { first: 1, last: 3, seconds: 7200, causes: ['fusion'], rules: ['FusionSilent'], consequences: [], helped: [], given_up: true, recordings: [{ name: kRecording, path: `/var/lib/culprit/recordings/${kRecording}`, bytes: 1_200_000 }] }),
 ]
-export const kIncidentEvents = kHealing.filter((e) => e.t >= kBroken).sort((a, b) => a.t - b.t).map((e) => ({ ...e, t: e.clock }))
+export const kIncidentEvents = hinging(kHealed).events.filter((e) => e.t >= kBroken).sort((a, b) => a.t - b.t).map((e) => ({ ...e, t: e.clock }))
 export const kNow = kBroken + 12
 
 // A rule whose trigger has no value says nothing, and that is not health.

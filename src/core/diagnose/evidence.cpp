@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 
 #include "diagnose/known_down.h"
+#include "diagnose/questions.h"
 #include "diagnose/touched.h"
 
 namespace culprit::diagnose {
@@ -158,6 +160,41 @@ std::vector<PieceOfEvidence> evidence_for(std::size_t j, std::size_t i, const Ot
                                           const Examination& found, const Knowledge& knowledge) {
   Collector collector(otherwise, found, knowledge);
   return i == j ? collector.own(i) : collector.other(j, i);
+}
+
+namespace {
+
+// Nothing if it is unknown what came of the question: culprit was deaf meanwhile.
+std::optional<Evidence> answer_of(const std::string& name, const ComponentState& state, Time now) {
+  const Questioned& questioned = state.questioned;
+  const auto told = [&](const char* what, Time when) {
+    return Evidence{EvidenceSource::kAnswer, name + what, now - when};
+  };
+  if (state.answered >= questioned.at) return told(" answered", state.answered);
+  if (questioned.is_open) return told(" was asked, and may still answer", questioned.at);
+  if (questioned.unanswered) return told(" did not answer", *questioned.unanswered);
+  if (questioned.is_pointless) return told(" did not answer, nor ever before", questioned.at);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Evidence> answers_about(RuleId failure, const Knowledge& knowledge) {
+  const auto asked_at = [&](ComponentId c) { return knowledge.components[c].questioned.at; };
+  const Time begun = onset_of(failure, knowledge).latest;
+  const std::vector<ComponentId>& own = knowledge.rules[failure].components;
+  std::vector<ComponentId> asked = knowledge.graph.upstream(own);
+  asked.insert(asked.end(), own.begin(), own.end());
+  std::erase_if(asked,
+                [&](ComponentId c) { return asked_at(c) == kLongAgo || asked_at(c) < begun; });
+  std::ranges::stable_sort(asked, std::ranges::greater(), asked_at);
+  asked.resize(std::min(asked.size(), kMostQuestions));
+  std::vector<Evidence> answers;
+  for (const ComponentId c : asked) {
+    if (auto answer = answer_of(knowledge.rules[c].name, knowledge.components[c], knowledge.now))
+      answers.push_back(std::move(*answer));
+  }
+  return answers;
 }
 
 }  // namespace culprit::diagnose

@@ -138,5 +138,52 @@ TEST_F(EvidenceFor, WhatWasLearnedCounts) {
   EXPECT_LT(upstream.back().log_odds, 0);
 }
 
+// map -> nav; navigation has been failing from the 90th second on, and ten seconds have passed.
+class AnswersAbout : public ::testing::Test {
+ protected:
+  AnswersAbout() : scene_(failure_of("map", "Map") + failure_of("nav", "Nav")) {
+    scene_.link("map", "nav").fail("Nav");
+    scene_->states.state(scene_.rule("Nav")).onset = Onset{Time(89s), Time(90s)};
+  }
+  ComponentState& state(const char* component) {
+    return scene_->components[scene_.component(component)];
+  }
+  std::vector<std::string> texts() {
+    std::vector<std::string> all;
+    for (const Evidence& each : answers_about(scene_.rule("Nav"), *scene_))
+      all.push_back(describe(each));
+    return all;
+  }
+
+  Scene scene_;
+};
+
+TEST_F(AnswersAbout, NamesWhatWasAskedAndWhetherItAnswered) {
+  EXPECT_THAT(texts(), ElementsAre()) << "nothing was asked";
+  state("map").questioned = {.at = Time(98s), .unanswered = Time(98s)};
+  state("nav").questioned = {.at = Time(99s), .is_open = true};
+  EXPECT_THAT(texts(), ElementsAre("nav was asked, and may still answer, 1.00 s before (answer)",
+                                   "map did not answer, 2.00 s before (answer)"));
+  state("nav").answered = Time(99500ms);
+  EXPECT_THAT(texts(), ElementsAre("nav answered, 0.50 s before (answer)",
+                                   "map did not answer, 2.00 s before (answer)"));
+}
+
+TEST_F(AnswersAbout, LeavesOutQuestionsFromBeforeTheFailure) {
+  state("map").questioned.at = Time(80s);
+  state("map").answered = Time(99s);
+  EXPECT_THAT(texts(), ElementsAre());
+}
+
+TEST_F(AnswersAbout, SaysNothingOfAQuestionWhoseAnswerWasLost) {
+  state("map").questioned.at = Time(98s);
+  EXPECT_THAT(texts(), ElementsAre());
+}
+
+TEST_F(AnswersAbout, WeighsNothing) {
+  state("map").questioned = {.at = Time(98s), .unanswered = Time(98s)};
+  EXPECT_EQ(answers_about(scene_.rule("Nav"), *scene_).front().log_odds, 0);
+}
+
 }  // namespace
 }  // namespace culprit::diagnose

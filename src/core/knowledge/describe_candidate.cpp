@@ -42,6 +42,8 @@ std::string_view to_string(EvidenceSource source) {
       return "kernel";
     case EvidenceSource::kMeasured:
       return "measured";
+    case EvidenceSource::kAnswer:
+      return "answer";
     case EvidenceSource::kAlarm:
       return "alarm";
     case EvidenceSource::kGraph:
@@ -55,8 +57,13 @@ std::string_view to_string(EvidenceSource source) {
 }
 
 std::string describe(const Evidence& evidence) {
+  const bool is_answer = evidence.source == EvidenceSource::kAnswer;
   std::string age;
-  if (evidence.age) age = ", for " + two_decimals(seconds(*evidence.age)) + " s";
+  if (evidence.age) {
+    const std::string time = two_decimals(seconds(*evidence.age)) + " s";
+    age = is_answer ? ", " + time + " before" : ", for " + time;
+  }
+  if (is_answer) return evidence.text + age + " (answer)";
   char weight[16];
   (void)std::snprintf(weight, sizeof weight, "%+.1f", evidence.log_odds);
   return evidence.text + age + " (" + std::string(to_string(evidence.source)) + ", " + weight + ")";

@@ -59,26 +59,27 @@ struct Candidate {
 enum class EvidenceSource : std::uint8_t {
   kKernel,    // the operating system says so
   kMeasured,  // culprit received it, or did not
+  kAnswer,    // a component answered culprit's own question, or did not
   kAlarm,     // a rule fires
   kGraph,     // the graph or the lifecycle of nodes
   kLearned,   // earlier failures
   kModel      // how failures usually come about
 };
-// "kernel", "measured", "alarm", "graph", "learned", "model".
+// "kernel", "measured", "answer", "alarm", "graph", "learned", "model".
 std::string_view to_string(EvidenceSource source);
 
 // A piece of evidence for a suspect, or against it (diagnose/evidence.h).
 struct Evidence {
   EvidenceSource source = EvidenceSource::kModel;
   std::string text;             // "camera exited"
-  std::optional<Duration> age;  // since when, if that is known
+  std::optional<Duration> age;  // since when, if that is known; kAnswer: when that was
   double log_odds = 0;          // its weight: natural logarithm; below 0 it speaks against it
   std::string
       without{};  // the component that would be held responsible without it; empty: the same
 
   bool operator==(const Evidence&) const = default;
 };
-// "camera exited 1.20 s ago (kernel, +2.9)"
+// "camera exited, for 1.20 s (kernel, +2.9)", "camera answered, 0.20 s before (answer)"
 std::string describe(const Evidence& evidence);
 
 // A component that may be responsible for a failure.
@@ -86,7 +87,7 @@ struct Suspect {
   ComponentId component;
   RuleId failure;                    // that points at it: the failure itself, or one upstream
   double probability = 0;            // that it is
-  std::vector<Evidence> evidence{};  // the heaviest first
+  std::vector<Evidence> evidence{};  // the heaviest first; the likeliest suspect has all answers
 };
 
 // A failure was detected.

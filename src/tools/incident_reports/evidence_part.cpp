@@ -9,6 +9,7 @@
 #include "incident_reports/incident_words.h"
 #include "incident_reports/page_parts.h"
 #include "journal/json.h"
+#include "knowledge/event.h"
 
 namespace culprit::incident_reports {
 namespace {
@@ -18,6 +19,10 @@ constexpr double kMostBefore = 60;  // s: what began earlier stands at the begin
 constexpr double kWide = 300;
 constexpr double kHigh = 16;
 constexpr double kDot = 5;
+
+bool is_answer(const Json& evidence) {
+  return journal::text_of(evidence, "source") == to_string(EvidenceSource::kAnswer);
+}
 
 struct OnsetRow {
   double at = 0;  // seconds since 1970
@@ -38,7 +43,7 @@ std::vector<OnsetRow> rows_of_events(const std::vector<Json>& events) {
       for (const Json& each : list_in(suspect, "evidence")) {
         const std::int64_t age = journal::integer_of(each, "age_ns", -1);
         const std::string text = journal::text_of(each, "text");
-        if (age < 0 || !known.emplace(who, text).second) continue;
+        if (age < 0 || is_answer(each) || !known.emplace(who, text).second) continue;
         rows.push_back({clock_of(event) - 1e-9 * static_cast<double>(age), who, text,
                         journal::number_of(each, "log_odds") < 0 ? "against" : "for"});
       }
@@ -83,12 +88,18 @@ std::string onsets_of(const std::vector<Json>& events, double end) {
 
 std::string evidence_of(const Json& decision) {
   std::string rows;
+  std::string answers;
   std::string hinges;
   for (const Json& suspect : list_in(decision, "suspects")) {
     for (const Json& each : list_in(suspect, "evidence")) {
       const std::int64_t age = journal::integer_of(each, "age_ns", -1);
-      rows += row_of({safe_text(suspect, "component"), safe_text(each, "text"),
-                      age < 0 ? "" : lasting_text(1e-9 * static_cast<double>(age)) + " before",
+      const std::string when =
+          age < 0 ? "" : lasting_text(1e-9 * static_cast<double>(age)) + " before";
+      if (is_answer(each)) {
+        answers += row_of({safe_text(each, "text"), when});
+        continue;
+      }
+      rows += row_of({safe_text(suspect, "component"), safe_text(each, "text"), when,
                       safe_text(each, "source"),
                       fmt::format("{:+.1f}", journal::number_of(each, "log_odds"))});
       if (const std::string without = safe_text(each, "without"); !without.empty())
@@ -96,8 +107,10 @@ std::string evidence_of(const Json& decision) {
                   "</b> would be held responsible.</p>\n";
     }
   }
-  if (rows.empty()) return "";
-  return table_of({"suspect", "evidence", "since", "source", "log-odds"}, rows) + hinges;
+  std::string out;
+  if (!rows.empty()) out += table_of({"suspect", "evidence", "since", "source", "log-odds"}, rows);
+  if (!answers.empty()) out += table_of({"asked and answered", "when"}, answers);
+  return out + hinges;
 }
 
 }  // namespace culprit::incident_reports

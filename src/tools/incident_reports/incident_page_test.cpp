@@ -71,7 +71,11 @@ PageContent page_of_rover() {
                {"age_ns", 1'510'000'000},
                {"log_odds", 2.9},
                {"without", "lidar"}},
-              {{"source", "learned"}, {"text", "one stayed before"}, {"log_odds", -1.2}}}}}}},
+              {{"source", "learned"}, {"text", "one stayed before"}, {"log_odds", -1.2}},
+              {{"source", "answer"},
+               {"text", "lidar answered"},
+               {"age_ns", 200'000'000},
+               {"log_odds", 0.0}}}}}}},
          {"candidates",
           {{{"strategy", "slow_down"}, {"cost", 0.4}, {"excluded", nullptr}},
            {{"strategy", "stop"},
@@ -132,6 +136,9 @@ TEST_F(IncidentPage, ShowsTheEvidenceOnOneTimeAxis) {
 
 TEST_F(IncidentPage, TellsWhatWasAskedAndAnswered) {
   const std::string html = incident_page(page_of_rover());
+  EXPECT_THAT(html, HasSubstr("<td>lidar answered</td><td>0.2 s before</td>"));
+  EXPECT_THAT(html, Not(HasSubstr("<td>drive</td><td>lidar answered</td>")))
+      << "an answer is neither evidence for the suspect nor an onset";
   EXPECT_THAT(html, HasSubstr("<td>drive: set speed to 0.2</td><td>done</td><td>40 ms</td>"));
   EXPECT_THAT(html, HasSubstr("<td>lidar: restart</td><td>none was recorded</td>"));
 }

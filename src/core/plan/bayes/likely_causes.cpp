@@ -199,6 +199,8 @@ std::vector<Suspect> LikelyCauses::suspects(std::size_t failure) const {
     }
     suspects.push_back(std::move(suspect));
   }
+  // Also of those that are no suspects, because they answered.
+  std::ranges::move(answers_about(rule, knowledge_), std::back_inserter(suspects.front().evidence));
   return suspects;
 }
 
