@@ -3,7 +3,7 @@ import { useEffect } from 'preact/hooks'
 import { byTheClock, lasting } from './clock'
 import { details, lookAt, trouble } from './component_details'
 import { listed } from './incidents'
-import { can, clockAt, events, graph, robot, rulesByComponent, state, stateOfComponent, stateOfTopic } from './store'
+import { can, clockAt, events, graph, robot, rulesByComponent, stateOfComponent, stateOfTopic } from './store'
 import { toAddress } from './plotted'
 import { trendOf } from './trends'
 
@@ -146,14 +146,15 @@ const kMostDone = 8
 export function ComponentPanel({ name }: { name: string }) {
   useEffect(() => lookAt(name), [name])
   const facts = robot.value?.components.find((c) => c.name === name)
-  const node = graph.value.nodes.find((n) => n.component === name)?.node
+  const known = graph.value.nodes.find((n) => n.component === name)
+  const node = known?.node
   const now = stateOfComponent(name)
   const rules = rulesByComponent.value.get(name) ?? []
   const strategies = rules.flatMap((r) => r.strategies.filter((s) => s.components.includes(name)).map((s) => ({ name: `${r.name}.${s.name}`, actions: s.actions })))
   const done = events.value.filter((e) => e.text && (e.component === name || e.components?.includes(name))).slice(-kMostDone).reverse()
-  const known: [string, string | undefined][] = [
-    ['node', node ?? 'not seen'],
-    ['process', state.value ? (now?.process ?? 'not seen yet') : 'unknown'],
+  const rows: [string, string | undefined][] = [
+    ['node', known ? `${known.node}${known.present ? '' : ', not discovered now'}` : 'not discovered'],
+    ['process', now?.process ?? (now?.condition || 'unknown')],
     ['started by', facts?.owner ?? (facts && 'an owner that the rules do not name')],
     ['computer', (now?.host ?? facts?.host) && `${now?.host ?? facts?.host}${now?.unheard ? ', which is unreachable' : ''}`],
     ['lifecycle', now?.lifecycle],
@@ -165,7 +166,7 @@ export function ComponentPanel({ name }: { name: string }) {
   return (
     <section class="details" aria-label={`About ${name}`}>
       <dl>
-        {known.map(([what, value]) => value && [<dt>{what}</dt>, <dd>{value}</dd>])}
+        {rows.map(([what, value]) => value && [<dt>{what}</dt>, <dd>{value}</dd>])}
       </dl>
       {strategies.length > 0 && (
         <table>

@@ -53,7 +53,7 @@ export const state = (t, { dead = null, incidents = [], overview = null, held = 
   overview: overview ?? (incidents.length > 0 ? { look: incidents[0].health, headline: incidents[0].headline, detail: incidents[0].doing } : kWell),
   rules: kRules.map(({ name }) => ({ phase: 'quiet', trigger: false, ...rules[name] })),
   components: kComponents.map((name) => ({
-    ...lookOf(name, dead, rules, overview?.look === 'DEAF'), ...held[name], present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active' })),
+    ...lookOf(name, dead, rules, overview?.look === 'DEAF'), present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active', ...held[name] })),
   topics: kTopics.map((_, i) => ({ rate: 10 + i, age: dead && i !== 1 ? t - kBroken : 0.05 })),
   inputs: [!dead, 0.1, 0.04, 11], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), priors: kRules.flatMap((r) => r.strategies.map((s) => s.prior)),
 })
@@ -158,12 +158,18 @@ const held = { health: 'OK', look: 'TIME_HELD', condition: 'clock paused' }
 export const kHeld = { events: [], control: {}, state: { held: { camera: held, depth: held }, overview: { look: 'TIME_HELD', headline: 'the simulated time of camera and depth stands still', detail: '/clock is paused: nothing is judged about them' } },
   cause: 'The simulated time of camera and depth stands still', level: 'On hold', mode: 'Acting', also: ['/clock is paused'] }
 
+// No rule reads what this component does, and it was never seen: no failure is seen, and the component is not well.
+const neverSeen = { health: 'OK', look: 'NEVER_SEEN', condition: 'never seen', present: false, alive: null, process: undefined, lifecycle: undefined }
+export const kNeverSeen = { events: [], control: {}, state: { held: { image_enhancement: neverSeen }, overview: { ...kWell, detail: `${kWell.detail}; one component was never seen` } },
+  graph: { ...kGraph, nodes: kGraph.nodes.map((each) => (each.component === 'image_enhancement' ? { ...each, present: false } : each)) },
+  cause: 'All is well', level: 'Well', mode: 'Acting', also: ['one component was never seen'] }
+
 // Events forgotten long ago: the failure itself is not.
 export const kForgotten = { events: [], control: {}, state: { RGBDead: failing, incidents: [{ ...kCause, headline: 'RGBDead fails', components: [], certain: false, consequences: [], doing: 'nothing is done yet', next: '' }] }, cause: 'RGBDead fails', level: 'Error', mode: 'Acting' }
 
-export function play(server, { events, control, state: rules }, t = kNow) {
+export function play(server, { events, control, state: rules, graph = kGraph }, t = kNow) {
   server.tell('robot', kRobot)
-  server.tell('graph', kGraph)
+  server.tell('graph', graph)
   server.tell('control', { ...kControl, ...control })
   for (const each of [...events].sort((a, b) => a.t - b.t)) server.tell('event', each)
   server.tell('state', state(t, rules))

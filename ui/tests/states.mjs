@@ -2,7 +2,7 @@
 // scrolling is seen, whole and at its place; nothing is cut off or lies over another thing; all of it says the same as `culprit status --json`
 // of the same moment, and looks as in the pictures beside this.
 import { isLaidOut } from './layout.mjs'
-import { kBlindStates, kForgotten, kHeld, kNow, kRobot, kStates, kToday, play, state } from './robots.mjs'
+import { kBlindStates, kForgotten, kHeld, kNeverSeen, kNow, kRobot, kStates, kToday, play, state } from './robots.mjs'
 import { kSizes, pictures } from './pictures.mjs'
 import { expect, expectSoon, file, isAccessible, kSchemes, statusOfStub, stubbed, suite } from './session.mjs'
 
@@ -176,6 +176,41 @@ async function everyState(page, server) {
   await album.end()
 }
 
+// A component that was never seen is neither well nor down: it has its own look in the list, the panel and the wall view.
+async function neverCallsWellWhatWasNeverSeen(page, server) {
+  await inEverySize(page, async (size, scheme) => {
+    server.anew()
+    play(server, kNeverSeen)
+    const at = `never seen, ${size}, ${scheme}`
+    await looksRight(page, at, size, kNeverSeen)
+    await saysAsTheTerminal(page, at, await statusOfStub())
+    await isLaidOut(page, at)
+    const entry = page.locator(size === 'wall' ? '.tile' : '[aria-label="Components"] ul button').filter({ hasText: 'image_enhancement' })
+    const { text, style, colour } = await entry.evaluate((e) => ({ text: e.innerText.replace(/\s+/g, ' '), style: getComputedStyle(e).borderTopStyle, colour: getComputedStyle(e).borderTopColor }))
+    expect(text === '? image_enhancement never seen', `this is said of it: ${text} (${at})`)
+    expect(style === 'dashed', `its frame is ${style} (${at})`)
+    const wellColour = await page.locator(size === 'wall' ? '.tile.look-OK' : '[aria-label="Components"] ul .look-OK').first().evaluate((e) => getComputedStyle(e).borderTopColor + getComputedStyle(e).borderTopStyle)
+    expect(wellColour !== colour + style, `it looks as what is well (${at})`)
+  })
+  await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'image_enhancement' }).click()
+  const panel = page.getByRole('region', { name: 'About image_enhancement' })
+  await panel.getByText('/image_enhancement, not discovered now').waitFor()
+  await panel.getByText('never seen', { exact: true }).waitFor()
+  expect((await panel.getByText('running').count()) === 0, 'a process that was never seen is said to run')
+  await isAccessible(page)
+  // In the graph, too.
+  await page.evaluate(() => {
+    window.drawn = new Set()
+    const { fillText } = CanvasRenderingContext2D.prototype
+    CanvasRenderingContext2D.prototype.fillText = function (...all) {
+      window.drawn.add(all[0])
+      return fillText.apply(this, all)
+    }
+  })
+  server.tell('graph', kNeverSeen.graph)
+  await page.waitForFunction(() => [...window.drawn].some((text) => text.startsWith('? image_')) && window.drawn.has('never seen'))
+}
+
 // Notes each frame in which the status bar and a star disagree, as it is painted: observers of sizes come after all else of a frame.
 function watchFrames() {
   const seen = (window.seenFrames = { count: 0, wrong: [] })
@@ -249,6 +284,7 @@ async function asksAgain(page, server) {
 await suite(async () => {
   await stubbed(kCalls, asksAgain, kToday)
   await stubbed(kCalls, everyState, kToday)
+  await stubbed(kCalls, neverCallsWellWhatWasNeverSeen, kToday)
   await stubbed(kCalls, neverSaysTwoThings, kToday)
   await stubbed(kCalls, isNeverOldInSecret)
 })
