@@ -1,5 +1,5 @@
 // The paper's rule SegmentationBad, from nothing, in the form.
-import { readFileSync } from 'node:fs'
+import { readFileSync, writeFileSync } from 'node:fs'
 import { expect, expectSoon, file, isAccessible, picture, session } from './session.mjs'
 
 const kRule = `RULE SegmentationBad
@@ -68,6 +68,40 @@ export async function buildsThePapersRule() {
     await page.getByText('as saved').waitFor()
     const saved = readFileSync(path, 'utf8').trim() + '\n'
     expect(saved === kRule, `this was saved:\n${saved}`)
+  })
+}
+
+const kHelpful = `COMPONENT camera NODE /camera
+COMPONENT viewer NODE /viewer
+DEPENDENCY viewer ON camera
+
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY again 50 10
+      ADAPTATION camera restart 5
+`
+
+// A rule that cannot help is an error as soon as it is written, before anybody saves it; and it is gone with its cause.
+export async function saysThatARuleCannotHelp() {
+  const path = file('helpless.rules')
+  writeFileSync(path, kHelpful)
+  await session(['web', path], async (page) => {
+    const form = page.getByRole('region', { name: 'Form' })
+    const found = page.getByRole('list', { name: 'Findings of the check' })
+    const strategy = form.getByRole('group', { name: 'Strategy again', exact: true })
+    await page.getByText('no errors').waitFor()
+    await strategy.getByLabel('type').last().selectOption('redeploy')
+    await found.getByText("no strategy of rule 'CameraSilent' can ever run: component 'camera' has no LAUNCH command").waitFor()
+    await page.locator('.bar [role="status"]').filter({ hasText: '1 error' }).waitFor()
+    await isAccessible(page)
+    await strategy.getByLabel('type').last().selectOption('restart')
+    await page.getByText('no errors, 0 warnings').waitFor()
+    // A restart of what only depends on the camera leaves the failure as it is.
+    const component = strategy.getByLabel('component', { exact: true }).last()
+    await component.fill('viewer')
+    await component.press('Tab')
+    await found.getByText("strategy 'again' adapts only 'viewer', which depends on 'camera'").waitFor()
   })
 }
 

@@ -1,5 +1,5 @@
 // Writing rules in the browser, with and without knowing the language.
-import { buildsThePapersRule, losesNothingToASlowServer, showsWhatIsSaidOfTheNewestText } from './builder.mjs'
+import { buildsThePapersRule, losesNothingToASlowServer, saysThatARuleCannotHelp, showsWhatIsSaidOfTheNewestText } from './builder.mjs'
 import { losesNothingThatWasWritten } from './drafts.mjs'
 import { drawsTheFile } from './file_graph.mjs'
 import { writesEveryRow } from './grammar.mjs'
@@ -12,6 +12,7 @@ await suite(async () => {
   await buildsThePapersRule()
   await mendsABrokenFile()
   if (isFirefox) return
+  await saysThatARuleCannotHelp()
   await drawsTheFile()
   await losesNothingToASlowServer()
   await showsWhatIsSaidOfTheNewestText()
