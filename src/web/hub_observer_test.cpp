@@ -70,6 +70,24 @@ TEST(HubObserver, TellsAProcessThatIsStoppedFromOneThatIsGone) {
   EXPECT_EQ(state["components"][1]["process"], "gone");
 }
 
+// Of the 300 ms from the detection to the cause's name on the page: at most an eighth.
+TEST(HubObserver, TellsTheStateSoonAfterAnEvent) {
+  static_assert(8 * HubObserver::kSoon <= std::chrono::milliseconds(300));
+  const auto seen = [](ProcessState process) {
+    return Observation{Time(), ProcessSeen{ComponentId(0), process, 12, ""}};
+  };
+  ToldOnce told({{Time(), NodeAppeared{"/camera"}}, seen(ProcessState::kRunning)});
+  const Hub::Reader reader(told.hub);
+  const Time before(Duration(1));
+  EXPECT_EQ(told.observer.next_look(), later(before, HubObserver::kPeriod));
+  const Time now = later(before, std::chrono::milliseconds(10));
+  std::vector<Observation> gone{seen(ProcessState::kGone)};
+  const auto commands = told.manager.step(now, gone);
+  ASSERT_FALSE(told.manager.events().empty());
+  told.observer.stepped({now, {}, gone, commands, told.manager.events()});
+  EXPECT_EQ(told.observer.next_look(), later(before, HubObserver::kSoon));
+}
+
 TEST(HubObserver, ShowsOtherNodesOfTheSameNameWithItsComponent) {
   const ToldOnce told({}, {{"/camera", "kill 12 or 13"}});
   const Json state = told.latest(Kind::kState);

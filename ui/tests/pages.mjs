@@ -2,6 +2,7 @@
 // screen reader, and looks as in the pictures beside this. Each page's purpose is tested on the stub.
 import { largeRobot } from './large_robot.mjs'
 import { isLaidOut } from './layout.mjs'
+import { keepsPace } from './pace.mjs'
 import { kSizes, pictures } from './pictures.mjs'
 import { hinging, kHealed, kIncidentEvents, kIncidents, kNow, kPausedLater, kRobot, kStates, kToday, play, state } from './robots.mjs'
 import { expect, expectSoon, file, isAccessible, isFirefox, isUsableByKeyboard, kSchemes, saved, stubbed, suite } from './session.mjs'
@@ -545,5 +546,5 @@ await suite(() =>
       await album.end()
     },
     kToday
-  ).then(() => isFirefox || stubbed(kCalls, guidesNewcomers, kToday, true))
+  ).then(() => isFirefox || stubbed(kCalls, guidesNewcomers, kToday, true).then(keepsPace))
 )
