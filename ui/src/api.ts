@@ -49,7 +49,7 @@ export async function call<T>(method: string, path: string, body?: unknown): Pro
   try {
     return await response.json()
   } catch {
-    throw new Refusal(0, 'culprit has ended while it answered; is it still running?')
+    throw new Refusal(0, 'culprit ended while it answered; is it still running?')
   }
 }
 

@@ -67,7 +67,7 @@ function App() {
           ))}
         </nav>
         {!hasToken && calls.value.size > 0 && (
-          <p class="view-only">Only to look at: open the address that culprit printed, with its token, to control it.</p>
+          <p class="view-only">Read-only. To control culprit, open the address that it printed, with its token.</p>
         )}
       </header>
       {current ? (

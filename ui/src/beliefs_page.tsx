@@ -42,13 +42,13 @@ const kGrid = Array.from({ length: 201 }, (_, i) => i / 200)
 const densityOptions = (): Options => ({
   scales: { x: { time: false } },
   axes: [
-    { ...axisLook(), label: 'how often it helps' },
+    { ...axisLook(), label: 'success rate' },
     { ...axisLook(), label: 'density' },
   ],
   series: [
     { label: 'success' },
-    { label: 'as the rules say', stroke: colour('muted'), dash: [6, 4], width: 2 },
-    { label: 'as learned', stroke: colour('accent'), width: 2 },
+    { label: 'prior of the rules', stroke: colour('muted'), dash: [6, 4], width: 2 },
+    { label: 'learned', stroke: colour('accent'), width: 2 },
   ],
 })
 
@@ -83,7 +83,7 @@ const kOutcomes: Record<string, string> = {
   failure_resolved: '✓ helped',
   strategy_failed: '✕ did not help',
   adaptation_failed: '✕ could not be carried out',
-  strategy_abandoned: '– was abandoned, which proves nothing',
+  strategy_abandoned: '– was abandoned; not counted',
 }
 const kMostOutcomes = 50
 
@@ -94,7 +94,7 @@ function Outcomes({ entry }: { entry: Entry }) {
   return (
     <section aria-label="Outcomes">
       <h3>Outcomes</h3>
-      {list.length === 0 && <p class="muted">It was not tried since culprit began to watch.</p>}
+      {list.length === 0 && <p class="muted">Not tried since culprit started.</p>}
       <ol>
         {list.map((e) => (
           <li key={e.number}>
@@ -123,7 +123,7 @@ function Forget({ rule }: { rule: string }) {
   if (asked !== null)
     return (
       <span class="bar" role="alert">
-        Forget {words}? It cannot be taken back.
+        Forget {words}? There is no undo.
         <button
           type="button"
           class="danger"
@@ -157,7 +157,7 @@ export function BeliefsPage() {
   return (
     <main class="beliefs">
       <div class="bar">
-        <h2>How likely each strategy is to help</h2>
+        <h2>Success rate of each strategy</h2>
         <button type="button" onClick={() => void exportAll()}>
           Export …
         </button>
@@ -169,9 +169,9 @@ export function BeliefsPage() {
             <thead>
               <tr>
                 <th scope="col">strategy</th>
-                <th scope="col">rules say</th>
-                <th scope="col">believed now</th>
-                <th scope="col">90 % sure of</th>
+                <th scope="col">prior</th>
+                <th scope="col">learned mean</th>
+                <th scope="col">90 % interval</th>
                 <th scope="col" class="interval-head">0 % to 100 %</th>
                 <th scope="col">learned from</th>
               </tr>

@@ -81,7 +81,7 @@ function Usage({ name }: { name: string }) {
   if (!process) return null
   const last = usage[usage.length - 1]
   const rows: [string, string, number[]][] = [
-    ['processor', last ? `${(100 * last.processor).toFixed(1)} % of a core` : 'measured …', usage.map((u) => u.processor)],
+    ['processor', last ? `${(100 * last.processor).toFixed(1)} % of a core` : 'measuring …', usage.map((u) => u.processor)],
     ['memory', megabytes(process.memory), usage.map((u) => u.memory)],
   ]
   return (
@@ -155,7 +155,7 @@ export function ComponentPanel({ name }: { name: string }) {
   const rows: [string, string | undefined][] = [
     ['node', known ? `${known.node}${known.present ? '' : ', not discovered now'}` : 'not discovered'],
     ['process', now?.process ?? (now?.condition || 'unknown')],
-    ['started by', facts?.owner ?? (facts && 'an owner that the rules do not name')],
+    ['started by', facts?.owner ?? (facts && 'not known: the rules name no owner')],
     ['computer', (now?.host ?? facts?.host) && `${now?.host ?? facts?.host}${now?.unheard ? ', which is unreachable' : ''}`],
     ['lifecycle', now?.lifecycle],
     ['being adapted by', now?.adapting],
@@ -198,7 +198,7 @@ export function ComponentPanel({ name }: { name: string }) {
         </>
       )}
       {details.value && <Log />}
-      {trouble.value && <p class="muted">More is not known: {trouble.value}</p>}
+      {trouble.value && <p class="muted">Details are missing: {trouble.value}</p>}
     </section>
   )
 }

@@ -68,7 +68,7 @@ function Silences() {
         })
       }}
     >
-      <h3>Leave alone</h3>
+      <h3>Silence a component or a rule</h3>
       <div class="row">
         <label class="field wider">
           <span>what</span>
@@ -105,7 +105,7 @@ function Silences() {
           return (
             <li class="bar">
               <span>
-                <b>{name}</b> is left alone
+                <b>{name}</b> is silenced
                 {s.until !== null && ` until ${when(clockAt(s.until))}, ${lasting(s.until - now.value)} more`}
                 {s.reason && ` (${s.author}: ${s.reason})`}
               </span>
@@ -139,7 +139,7 @@ function ByHand() {
         void order(`Running ${strategy}`, { order: 'run', rule, strategy })
       }}
     >
-      <h3>Do it now</h3>
+      <h3>Run a strategy now</h3>
       <div class="row">
         <label class="field">
           <span>strategy</span>
@@ -174,7 +174,7 @@ export function Control() {
             void order(on ? 'Dry run' : 'Acting again', { order: 'dry_run', on })
           }}
         />{' '}
-        dry run: only say what would be done
+        dry run: report decisions, change nothing
       </label>
       <details>
         <summary>More control</summary>

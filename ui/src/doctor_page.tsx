@@ -64,7 +64,7 @@ function Progress() {
   return (
     <p class="bar" role="status">
       <progress max={seconds.value} value={passed} aria-label="How far the examination is" />
-      It looks at the robot for {seconds.value} s, and changes nothing.
+      culprit examines the robot for {seconds.value} s, and changes nothing.
     </p>
   )
 }
@@ -101,10 +101,10 @@ function Findings() {
       <p class={findings.length === 0 ? 'headline well' : 'headline'}>
         <b>
           {findings.length === 0
-            ? '✓ Nothing is wrong that can be seen from outside.'
-            : `${count('error')} ${count('error') === 1 ? 'error' : 'errors'}, ${findings.length - count('error')} less grave.`}
+            ? '✓ No findings. culprit sees nothing wrong from outside.'
+            : `${count('error')} ${count('error') === 1 ? 'error' : 'errors'}, ${findings.length - count('error')} less severe.`}
         </b>{' '}
-        {nodes} {nodes === 1 ? 'node' : 'nodes'} on domain {domain}, looked at {when(at)}.{' '}
+        {nodes} {nodes === 1 ? 'node' : 'nodes'} on domain {domain}, examined at {when(at)}.{' '}
         {gone.length > 0 && `Gone since the last time: ${gone.join(', ')}.`}
       </p>
       {findings.length > 0 && (
@@ -118,7 +118,7 @@ function Findings() {
       {shown.map((finding) => (
         <Card key={keyOf(finding) + finding.seen} finding={finding} />
       ))}
-      {shown.length === 0 && findings.length > 0 && <p class="muted">None of them has “{wanted.value}” in it.</p>}
+      {shown.length === 0 && findings.length > 0 && <p class="muted">No finding contains “{wanted.value}”.</p>}
     </section>
   )
 }

@@ -35,7 +35,7 @@ function EvidenceList({ evidence }: { evidence: Evidence[] }) {
         <li>
           {each.text}
           {each.age_ns ? `, for ${lasting(each.age_ns / 1e9)}` : ''}{' '}
-          <small title="log-odds: above 0 it speaks for this suspect">
+          <small title="log-odds: above 0 for this suspect, below 0 against it">
             {each.source} {signed(each.log_odds)}
           </small>
         </li>
@@ -398,7 +398,7 @@ export function Components() {
           </li>
         ))}
       </ul>
-      {rest.length > 0 && <p class="muted others">and {rest.length} more, to be found by their names above the graph.</p>}
+      {rest.length > 0 && <p class="muted others">and {rest.length} more; find them by name above the graph.</p>}
       {selected.value && <ComponentPanel key={selected.value} name={selected.value} />}
     </section>
   )
@@ -414,7 +414,7 @@ function BlindRules() {
             {rule.name} is <Term>blind</Term>
           </h2>
           <p>
-            {sentence(rule.text)} culprit cannot tell whether its failure is present, since {byTheClock(clockAt(rule.since), 1)}.
+            {sentence(rule.text)} Since {byTheClock(clockAt(rule.since), 1)}, culprit cannot tell whether its failure is present.
           </p>
         </article>
       ))}
@@ -424,14 +424,20 @@ function BlindRules() {
 
 const sentence = (text: string) => text.charAt(0).toUpperCase() + text.slice(1) + (/[.?!]$/.test(text) ? '' : '.')
 
+// Of another moment only the events are known: no alarm is not health.
+function NoFailureThen({ view }: { view: View }) {
+  const blind = [...view.situation.value.blind]
+  return (
+    <p class="headline look-UNTOLD">
+      <b>No rule sees a failure{view.isNewest.value ? '' : ' at this moment'}.</b>
+      {blind.length > 0 && ` ${listed(blind)} ${blind.length === 1 ? 'is' : 'are'} blind.`}
+    </p>
+  )
+}
+
 // Where nothing has failed: how the robot is, as culprit says it.
 function NoIncident({ view }: { view: View }) {
-  if (view !== live || !isLive.value)
-    return (
-      <p class="headline well">
-        <b>✓ All is well.</b> No rule sees a failure{view.isNewest.value ? '' : ' at this moment'}.
-      </p>
-    )
+  if (view !== live || !isLive.value) return <NoFailureThen view={view} />
   if (!state.value) return <p class="headline look-UNTOLD">… Asking culprit how the robot is.</p>
   const { look, headline, detail } = state.value.overview
   return (
@@ -454,14 +460,14 @@ export function Explanation({ view }: { view: View }) {
     <section class="explanation" aria-label="Explanation">
       {view === live && !isLive.value && (
         <p class="past">
-          You look at <b>{byTheClock(clockAt(view.moment.value!), 1)}</b>, {lastingSoFar(now.value - view.moment.value!)} before
-          what was told last. <button type="button" onClick={() => (view.moment.value = null)}>Back to now</button>
+          You see the robot at <b>{byTheClock(clockAt(view.moment.value!), 1)}</b>, {lastingSoFar(now.value - view.moment.value!)} before
+          the latest data. <button type="button" onClick={() => (view.moment.value = null)}>Back to now</button>
         </p>
       )}
       {all.length === 0 && <NoIncident view={view} />}
       {wanted && (
         <p class="muted">
-          Only what concerns {wanted}.{' '}
+          Only incidents of {wanted}.{' '}
           <button type="button" onClick={() => (selected.value = null)}>
             Show all
           </button>

@@ -35,7 +35,7 @@ function parameterOf(text: string): string | Parameter {
 // The entered value of the member; undefined removes the member.
 function valueOf(entered: string, kind: FieldKind, isOptional: boolean): unknown {
   if (entered === '' && (kind === 'arguments' || kind === 'parameters')) return []
-  if (entered === '') return isOptional ? undefined : new Error('something has to stand here')
+  if (entered === '') return isOptional ? undefined : new Error('a value is required')
   if (kind === 'text') return entered
   if (kind === 'names') return /\s/.test(entered) ? entered.split(/\s+/) : entered
   if (kind === 'list') return entered.split(/[\s,]+/)
@@ -48,7 +48,7 @@ function valueOf(entered: string, kind: FieldKind, isOptional: boolean): unknown
   if (kTwo[kind] && parts.length !== 2) return new Error(kTwo[kind])
   if (kind === 'pair') return parts
   const numbers = parts.map(Number)
-  if (parts.includes('') || numbers.some(Number.isNaN)) return new Error(kTwo[kind] ?? 'a number has to stand here')
+  if (parts.includes('') || numbers.some(Number.isNaN)) return new Error(kTwo[kind] ?? 'a number is required')
   return kind === 'number' ? numbers[0] : numbers
 }
 

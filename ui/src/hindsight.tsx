@@ -59,7 +59,7 @@ const kTypes = { detected: 'failure_detected', gone: 'failure_resolved', chosen:
 const events = computed((): ManagerEvent[] =>
   (found.value?.answer.other ?? []).map(({ clock, what, rule, strategy }, number) => ({
     number, t: clock, clock, type: kTypes[what], label: '', severity: 'info', tone: '', rule, strategy, dry_run: true,
-    text: strategy ? `${strategy} would be begun` : '', criticality: found.value!.criticality.get(rule) ?? 'WARNING',
+    text: strategy ? `${strategy} would start` : '', criticality: found.value!.criticality.get(rule) ?? 'WARNING',
   }))
 )
 const view = viewOf(events, computed(() => found.value?.answer.until ?? 1), {
@@ -118,18 +118,18 @@ function Result() {
     <>
       {answer.missing.length > 0 && (
         <p class="sick" role="alert">
-          ▲ Not recorded, because the rules that ran did not read it: {answer.missing.join(', ')}. Conditions on it are unknown here.
+          ▲ Not recorded, because the running rules did not read it: {answer.missing.join(', ')}. Conditions on it are unknown here.
         </p>
       )}
       <Timeline view={view} label="Failures and repairs under these rules" />
-      {rules.length === 0 && <p>Neither these rules nor those that ran saw a failure in that time.</p>}
+      {rules.length === 0 && <p>Neither these rules nor the running ones saw a failure in that time.</p>}
       {rules.length > 0 && (
         <table>
           <thead>
             <tr>
               <th scope="col">rule</th>
               <th scope="col">these rules</th>
-              <th scope="col">the rules that ran</th>
+              <th scope="col">the running rules</th>
             </tr>
           </thead>
           <tbody>
@@ -143,7 +143,7 @@ function Result() {
           </tbody>
         </table>
       )}
-      <p class="muted">Nothing is done in a recording: each failure is as long as it was, and strategies are those that would have been begun.</p>
+      <p class="muted">A replay repairs nothing: each failure lasts as long as it did. Strategies are those that would have started.</p>
     </>
   )
 }

@@ -20,6 +20,7 @@ export interface Situation {
   failures: Failure[] // most critical first
   incidents: Incident[] // in the order of all views
   gone: Set<string> // components
+  blind: Set<string> // rules
 }
 
 const kLevels: Criticality[] = ['NON_CRITICAL', 'WARNING', 'ERROR']
@@ -32,6 +33,7 @@ export const healthOf = (failure: Failure): Health => (failure.phase === 'exhaus
 function situationAt(history: ManagerEvent[], t: number): Situation {
   const failures = new Map<string, Failure>()
   const gone = new Set<string>()
+  const blind = new Set<string>()
   const incidents = new Map<string, Incident>()
   for (const event of history) {
     if (event.t > t) break
@@ -91,6 +93,13 @@ function situationAt(history: ManagerEvent[], t: number): Situation {
       case 'reloaded': // what is still there is detected anew
         failures.clear()
         gone.clear()
+        blind.clear()
+        break
+      case 'rule_blind':
+        blind.add(event.rule!)
+        break
+      case 'rule_sees':
+        blind.delete(event.rule!)
         break
       case 'component_lost':
         gone.add(event.component!)
@@ -100,7 +109,7 @@ function situationAt(history: ManagerEvent[], t: number): Situation {
         break
     }
   }
-  return { t, failures: [...failures.values()], incidents: inOrder(incidents.values()), gone }
+  return { t, failures: [...failures.values()], incidents: inOrder(incidents.values()), gone, blind }
 }
 
 const sorted = (failures: Failure[]) =>

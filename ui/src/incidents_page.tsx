@@ -30,7 +30,7 @@ const view = viewOf(
 export const causeOf = (incident: PastIncident) => listed(incident.causes) || incident.rules[0]
 export function outcomeOf(incident: PastIncident): string {
   if (incident.given_up) return 'given up: a person must look'
-  if (!incident.over) return 'not over'
+  if (!incident.over) return 'still open'
   if (incident.merged_into) return `part of ${incident.merged_into}`
   if (incident.lost) return 'can no longer be evaluated'
   if (incident.cut) return 'unknown: culprit ended before'
@@ -65,11 +65,11 @@ function List() {
       <table class="incident-list">
         <thead>
           <tr>
-            <th scope="col">when</th>
+            <th scope="col">start</th>
             <th scope="col">cause</th>
-            <th scope="col">what suffered</th>
-            <th scope="col" class="number">for</th>
-            <th scope="col">what helped</th>
+            <th scope="col">effects</th>
+            <th scope="col" class="number">duration</th>
+            <th scope="col">outcome</th>
           </tr>
         </thead>
         <tbody>
@@ -171,7 +171,7 @@ function Details({ incident }: { incident: PastIncident }) {
       </div>
       <p>
         {incident.over ? 'It lasted' : 'It has lasted for'} {lasting(lastingOf(incident))}.{' '}
-        {incident.consequences.length > 0 && `${listed(incident.consequences)} suffered. `}
+        {incident.consequences.length > 0 && `Effects: ${listed(incident.consequences)}. `}
         {incident.over && `Outcome: ${outcomeOf(incident)}.`}
       </p>
       <Recordings incident={incident} />
@@ -198,7 +198,7 @@ function Head() {
         </select>
       </label>
       <span class="muted">
-        {remark && `Only of the last events: ${remark}.`}
+        {remark && `Only the latest events: ${remark}.`}
         {oldest ? `The journal begins ${when(oldest)}.` : ''}
       </span>
     </div>
@@ -213,8 +213,8 @@ export function IncidentsPage() {
       <Head />
       {trouble.value && <p class="sick" role="alert">◆ {trouble.value}</p>}
       {answer.value === null && !trouble.value && <p>Reading the journal …</p>}
-      {answer.value !== null && incidents.value.length === 0 && <p class="headline well">Nothing.</p>}
-      {isMissing && <p role="alert">There is no incident of this address in what is recorded.</p>}
+      {answer.value !== null && incidents.value.length === 0 && <p>No incidents in this time.</p>}
+      {isMissing && <p role="alert">The journal has no incident with this address.</p>}
       {incidents.value.length > 0 && (
         <>
           {incidents.value.length > 1 && <Timeline view={overview} label="All incidents" hasMoment={false} />}

@@ -30,7 +30,7 @@ export const kLooks: Record<Look, Appearance> = {
   EXHAUSTED: { sign: '✖', word: 'Gave up', tone: 'EXHAUSTED' },
   ERROR: { sign: '◆', word: 'Error', tone: 'ERROR' },
   MISSING: { sign: '◇', word: 'Missing', tone: 'ERROR' },
-  UNREACHABLE: { sign: '⚠', word: 'Not heard', tone: 'WARNING' },
+  UNREACHABLE: { sign: '⚠', word: 'Unreachable', tone: 'WARNING' },
   DEAD: { sign: '✕', word: 'Down', tone: 'WARNING' },
   HUNG: { sign: '✕', word: 'Hangs', tone: 'WARNING' },
   STOPPED: { sign: '✕', word: 'Stopped', tone: 'WARNING' },
@@ -43,7 +43,7 @@ export const kLooks: Record<Look, Appearance> = {
   NEVER_SEEN: { sign: '?', word: 'Never seen', tone: 'unknown' },
   TIME_HELD: { sign: '◔', word: 'On hold', tone: 'blind' },
   UNWATCHED: { sign: '–', word: 'No rule', tone: 'unknown' },
-  UNTOLD: { sign: '…', word: 'Asking', tone: 'unknown' },
+  UNTOLD: { sign: '…', word: 'No data', tone: 'unknown' },
   OK: { sign: '✓', word: 'Well', tone: 'OK' },
 }
 const kRanks = new Map(Object.keys(kLooks).map((look, place) => [look, place]))

@@ -31,7 +31,7 @@ function Canvas({ map }: { map: MapPicture }) {
 function nothingYet(map: MapPicture | null): string {
   if (trouble.value) return trouble.value
   if (map?.troubles.length) return ''
-  if (map?.topics.length) return `Nothing has come on ${wanted.value || map.topics[0]} so far.`
+  if (map?.topics.length) return `No message on ${wanted.value || map.topics[0]} yet.`
   if (Date.now() - began.value < kDiscovery) return 'Looking for a map …'
   return 'No node publishes a nav_msgs/msg/OccupancyGrid.'
 }
@@ -40,7 +40,7 @@ function Legend({ map }: { map: MapPicture }) {
   const { width, height, resolution, coarser } = grid.value!
   return (
     <p class="muted">
-      {(width * resolution).toFixed(1)} × {(height * resolution).toFixed(1)} m{coarser > 1 && `, drawn ${coarser} times coarser than it is`}
+      {(width * resolution).toFixed(1)} × {(height * resolution).toFixed(1)} m{coarser > 1 && `, drawn ${coarser} times coarser`}
       {map.robots.map((robot) => `; ${place(robot)}`)}
       {map.path && `; path ${map.path.topic}, ending at ◎`}
       {map.scan && (map.scan.age > kStale ? `; ${map.scan.topic} is ${lasting(map.scan.age)} old` : `; dots: ${map.scan.topic}`)}

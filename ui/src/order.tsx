@@ -28,7 +28,7 @@ export async function order(what: string, body: Record<string, unknown>): Promis
 export function Author() {
   return (
     <label class="field">
-      <span>your name, for the record</span>
+      <span>your name, for the journal</span>
       <input
         value={author.value}
         maxLength={100}

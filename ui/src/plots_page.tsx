@@ -327,7 +327,7 @@ export function PlotsPage() {
       <Time />
       {trouble.value && <p class="sick" role="alert">◆ {trouble.value}</p>}
       {names.length === 0 ? (
-        <p class="muted">Choose a signal: what the rules read, how topics come, or what processes use.</p>
+        <p class="muted">Choose a signal: an input of the rules, rate or age of a topic, processor or memory of a component.</p>
       ) : (
         <Plotter
           label={`${names.map(inWords).join(', ')} over time; Save as CSV has the values`}
@@ -338,7 +338,7 @@ export function PlotsPage() {
           onPlot={(made) => (plot.current = made)}
         />
       )}
-      {names.length > 0 && isEmpty && <p class="muted">No values of this time.</p>}
+      {names.length > 0 && isEmpty && <p class="muted">No values in this time.</p>}
       <p class="muted">{howFarBack()}</p>
       <Exports plot={plot} />
       {marks.length > 0 && (

@@ -71,7 +71,7 @@ export function RuleConflicts({ list }: { list: Relation[] }) {
   const isGrave = list.some((r) => r.kind !== 'shares')
   return (
     <details class="conflicts" open={isGrave}>
-      <summary>{isGrave ? '▲ Rules that are in one another’s way' : 'Rules that adapt the same components'}</summary>
+      <summary>{isGrave ? '▲ Conflicting rules' : 'Rules that adapt the same components'}</summary>
       <div class="drawing">
         <ul>
           {names.map((name) => (

@@ -102,7 +102,7 @@ function Restored({ write }: { write: (text: string) => void }) {
         <p>Your unsaved text of {byTheClock(draft!.at / 1000)} is restored.</p>
         <div class="bar">
           <button type="button" onClick={() => (restored.value = null)}>
-            Go on
+            Keep it
           </button>
           <button type="button" onClick={() => take(file.value!.text)}>
             Discard it
@@ -114,13 +114,13 @@ function Restored({ write }: { write: (text: string) => void }) {
   return (
     <section class="banner" role="alert" aria-label="Conflict">
       <p>
-        <b>{other.path} was changed by another program meanwhile.</b> Your text was not written. The other changes:
+        <b>{other.path} was changed by another program meanwhile.</b> Your text was not saved. The other changes:
       </p>
       <Difference before={file.value.text} after={other.text} />
       <div class="bar">
         {both !== null && (
           <button type="button" class="primary" onClick={() => take(both)}>
-            Bring both together
+            Merge both
           </button>
         )}
         <button type="button" onClick={() => take(text.value)}>
@@ -130,7 +130,7 @@ function Restored({ write }: { write: (text: string) => void }) {
           Take theirs
         </button>
       </div>
-      {both === null && <p class="muted">Both changed the same lines, so that they cannot be brought together.</p>}
+      {both === null && <p class="muted">Both changed the same lines, so they cannot be merged.</p>}
     </section>
   )
 }
@@ -166,7 +166,7 @@ function Save({ onClose }: { onClose: () => void }) {
       <h2>Save {file.value!.path}?</h2>
       {errors > 0 && (
         <p class="sick">
-          ◆ The file has {errors} {errors > 1 ? 'errors' : 'error'}: culprit will not run it like this.
+          ◆ The file has {errors} {errors > 1 ? 'errors' : 'error'}: culprit refuses to run it.
         </p>
       )}
       {why && (
@@ -177,8 +177,8 @@ function Save({ onClose }: { onClose: () => void }) {
       <Difference before={file.value!.text} after={text.value} />
       {canReload() && (
         <p class="muted">
-          The manager that runs goes on with the rules it has until they are reloaded: what it has learned and
-          what is under way stay.
+          The running culprit keeps its old rules until you reload. A reload keeps learned values and the strategy
+          under way.
         </p>
       )}
       <div class="bar">
@@ -199,8 +199,8 @@ function Save({ onClose }: { onClose: () => void }) {
 }
 
 function whyNotSave(): string {
-  if (file.value?.can_save === false) return 'these rules are part of the program'
-  if (refusedFields() > 0) return 'a field of the form holds what was not taken; mend it, or press Escape in it'
+  if (file.value?.can_save === false) return 'these rules are built into the program'
+  if (refusedFields() > 0) return 'a field of the form has an invalid value: correct it, or press Escape in it'
   return theirs.value ? 'the file has changed meanwhile: choose a version above' : ''
 }
 
@@ -301,7 +301,7 @@ export function RulesPage() {
           <button
             type="button"
             disabled={!hasToken || isChanged || errors > 0}
-            title={isChanged ? 'save first: what is reloaded is the file' : ''}
+            title={isChanged ? 'save first: Reload reads the file' : ''}
             onClick={() => void reload()}
           >
             Reload
@@ -311,7 +311,7 @@ export function RulesPage() {
       <Restored write={(next) => editor.current?.setText(next)} />
       {unreadable.value && (
         <pre class="sick unreadable" role="alert">
-          The form waits until the text can be read{errors > 0 ? '; the mistakes are listed below the text.' : `: ${unreadable.value}`}
+          The form is off until the text can be parsed{errors > 0 ? '; the errors are listed below the text.' : `: ${unreadable.value}`}
         </pre>
       )}
       <div class="sides">

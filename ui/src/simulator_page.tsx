@@ -184,7 +184,7 @@ export function SimulatorPage() {
       <h2>What would culprit do if …?</h2>
       <div class="columns">
         <form aria-label="The imagined robot" onSubmit={(e) => e.preventDefault()}>
-          <p class="muted">The plan is for the robot as you describe it here; the real one is not touched.</p>
+          <p class="muted">Describe a robot. The plan is for it; the real robot is not touched.</p>
           <h3>Components</h3>
           {(robot.value?.components ?? []).map(({ name }, place) => (
             <label class="field">

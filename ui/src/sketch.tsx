@@ -47,7 +47,7 @@ export function Sketch({ clause, constant, take }: { clause: Clause; constant?: 
   const own = amountOf(clause.value)
   const fixed = own ?? amountOf(constant ?? '')
   const { values: series, times } = trendLookedAt(clause)
-  if (series.length < 2) return <p class="muted sketch-none">No sketch: the rules that run do not read this, or the page has not been open for long enough.</p>
+  if (series.length < 2) return <p class="muted sketch-none">No sketch: the running rules do not read this, or the page was opened a moment ago.</p>
   const threshold = dragged ?? fixed
   const low = Math.min(clause.kind === 'value' ? Infinity : 0, ...series, fixed ?? Infinity)
   const high = Math.max(...series, fixed ?? -Infinity)

@@ -31,11 +31,11 @@ export const modes = computed((): Mode[] => {
   const silenced = listed(now.silences.map((s) => s.component ?? s.rule ?? ''))
   if (now.paused) add('paused', 'Ⅱ Paused', 'Nothing is changed on the robot until you resume.')
   if (now.hears === false) add('deaf', '⚠ Deaf', "culprit does not receive the robot's messages: it judges nothing and does nothing.")
-  if (asked) add('approval', '? Approval', `Waits for your word: ${asked}.`)
-  if (now.dry_run) add('dry-run', '◌ Dry run', 'Culprit only says what it would do.')
-  if (now.held_back && !now.paused) add('held', 'Ⅱ Held back', `Nothing is begun: ${now.held_back}.`)
-  if (silenced) add('silenced', '∅ Silenced', `Left alone: ${silenced}.`)
-  if (list.length === 0) add('acting', '● Acting', 'Culprit repairs what fails.')
+  if (asked) add('approval', '? Approval', `Waits for your approval: ${asked}.`)
+  if (now.dry_run) add('dry-run', '◌ Dry run', 'culprit only reports what it would do.')
+  if (now.held_back && !now.paused) add('held', 'Ⅱ Held back', `No strategy starts: ${now.held_back}.`)
+  if (silenced) add('silenced', '∅ Silenced', `No strategy starts for ${silenced}.`)
+  if (list.length === 0) add('acting', '● Acting', 'culprit repairs failures.')
   return list
 })
 
@@ -50,7 +50,7 @@ const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1)
 function ofRobot(): Told {
   if (!state.value) {
     const { sign, word, tone } = kLooks.UNTOLD
-    return told(tone, sign, word, 'Asking culprit how the robot is', 'nothing has come so far')
+    return told(tone, sign, word, 'Asking culprit how the robot is', 'no data yet')
   }
   const { look, headline, detail } = state.value.overview
   const { sign, word, tone } = kLooks[look]
@@ -74,7 +74,7 @@ export const status = computed((): Status => {
     }
   }
   if (!can('get', '/api/stream'))
-    return { ...told('unknown', '–', 'No robot', 'No robot is watched here', 'rules and studies only'), modes: [] }
+    return { ...told('unknown', '–', 'No robot', 'No robot here', 'this culprit edits rules and runs studies'), modes: [] }
   return { ...ofRobot(), modes: modes.value }
 })
 

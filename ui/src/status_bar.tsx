@@ -35,7 +35,7 @@ function Brake() {
     ? isPaused
       ? 'culprit acts again'
       : 'culprit changes nothing on the robot until you resume (Alt+P or the Pause key)'
-    : 'Only to look at: open the address that culprit printed, with its token, to control it.'
+    : 'Read-only. To control culprit, open the address that it printed, with its token.'
   return (
     <button
       type="button"

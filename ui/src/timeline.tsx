@@ -87,8 +87,8 @@ const kShortest = 0.02 // s, of what is shown
 const kLeastShare = 0.2 // %, between two bars
 
 const kNames: [string, string][] = [
-  ['▼', 'begun'],
-  ['▽', 'would be begun'],
+  ['▼', 'started'],
+  ['▽', 'would start'],
   ['✕', 'did not help'],
   ['✖', 'given up'],
 ]
@@ -372,7 +372,7 @@ export function EventLog({ view }: { view: View }) {
   return (
     <section class="log" aria-label="Event log">
       <h2>Event log</h2>
-      {list.length === 0 && <p class="muted">Nothing yet.</p>}
+      {list.length === 0 && <p class="muted">No events yet.</p>}
       <ol>{list.map(lineOf)}</ol>
     </section>
   )

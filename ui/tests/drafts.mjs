@@ -55,7 +55,7 @@ async function reload(page) {
   await draft.getByText('is restored').waitFor()
   await text(page).filter({ hasText: 'STRATEGY wake 77 10' }).waitFor()
   await isAccessible(page)
-  await draft.getByRole('button', { name: 'Go on' }).click()
+  await draft.getByRole('button', { name: 'Keep it' }).click()
 }
 
 async function slip(page) {
@@ -90,7 +90,7 @@ async function conflict(page) {
   await isAccessible(page)
   await picture(page, 'rules-conflict')
   await page.reload() // the conflict is not forgotten, either
-  await both.getByRole('button', { name: 'Bring both together' }).click()
+  await both.getByRole('button', { name: 'Merge both' }).click()
   await save(page)
   await page.getByText('as saved').waitFor()
   const saved = readFileSync(path, 'utf8')
@@ -104,8 +104,8 @@ async function choice(page) {
   writeFileSync(path, readFileSync(path, 'utf8').replace('wake 77', 'wake 70'))
   await save(page)
   const both = page.getByRole('alert', { name: 'Conflict' })
-  await both.getByText('cannot be brought together').waitFor()
-  expect((await both.getByRole('button', { name: 'Bring both together' }).count()) === 0, 'a wrong merge is offered')
+  await both.getByText('cannot be merged').waitFor()
+  expect((await both.getByRole('button', { name: 'Merge both' }).count()) === 0, 'a wrong merge is offered')
   await both.getByRole('button', { name: 'Keep mine' }).click()
   await save(page)
   await page.getByText('as saved').waitFor()

@@ -30,7 +30,7 @@ await suite(() =>
     const newest = Number(await log.getByRole('button').first().getAttribute('data-t'))
     expect(newest <= Number(await slider.inputValue()), 'what came later is shown')
     await slider.press('Home')
-    await well.waitFor() // as it was before it was broken
+    await explanation.getByText('No rule sees a failure at this moment').waitFor() // as it was before it was broken
     const live = page.getByRole('button', { name: 'Live' })
     await live.click()
     await well.waitFor()

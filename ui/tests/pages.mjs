@@ -261,7 +261,7 @@ async function tellsIncidents(page, server, album) {
   const longAgo = kIncidents.at(-1).clock - 10 * 86_400
   await page.evaluate((id) => (location.hash = `incidents/${id}`), Math.round(longAgo * 1000).toString(36))
   await expectSoon(() => server.received.some(([call, query]) => call === 'get /api/incidents' && Number(query.since) < longAgo), 'the journal was not asked for that time')
-  await page.getByText('There is no incident of this address').waitFor()
+  await page.getByText('The journal has no incident with this address').waitFor()
   // The black box's recordings of one.
   await page.evaluate((id) => (location.hash = `incidents/${id}`), kIncidents.at(-1).id)
   await incident.getByText('/var/lib/culprit/recordings/rover_').waitFor()
@@ -418,7 +418,7 @@ async function examines(page, server, album) {
   await become(page, server, kStates.well, 'doctor')
   await page.getByRole('button', { name: 'Examine' }).click()
   const report = page.getByRole('region', { name: 'Findings' })
-  await report.getByText('1 error, 1 less grave').waitFor()
+  await report.getByText('1 error, 1 less severe').waitFor()
   await report.getByRole('article').filter({ hasText: '/scan: /lidar → /slam' }).getByText('let /lidar offer reliable').waitFor()
   expect(server.received.find(([call]) => call === 'post /api/doctor')[1].seconds === 8, 'it looks for another time than was chosen')
   await photograph(page, album, 'doctor-findings')

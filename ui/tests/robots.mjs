@@ -153,6 +153,9 @@ export const kBlindStates = {
   'watching-nothing': { events: [], control: {}, state: { ...Object.fromEntries(kRules.map(({ name }) => [name, blind(kEntropy)])), overview: { look: 'WATCHING_NOTHING', headline: 'watching nothing: no rule can see', detail: kEntropy } }, cause: 'Watching nothing', level: 'Unknown', mode: 'Acting', also: ['signal entropy was never seen'] },
 }
 
+// The same with the event that began it, for an earlier moment.
+export const kBlindLongAgo = { ...kBlindStates.blind, events: [event(kBroken, 'rule_blind', 'BLIND', 'warning', 'warning', `SegmentationBad is blind: ${kEntropy}`, { rule: 'SegmentationBad' })] }
+
 // The simulation is paused, and with it the time of two nodes.
 const held = { health: 'OK', look: 'TIME_HELD', condition: 'clock paused' }
 export const kHeld = { events: [], control: {}, state: { held: { camera: held, depth: held }, overview: { look: 'TIME_HELD', headline: 'the simulated time of camera and depth stands still', detail: '/clock is paused: nothing is judged about them' } },

@@ -2,7 +2,7 @@
 // scrolling is seen, whole and at its place; nothing is cut off or lies over another thing; all of it says the same as `culprit status --json`
 // of the same moment, and looks as in the pictures beside this.
 import { isLaidOut } from './layout.mjs'
-import { kBlindStates, kForgotten, kHeld, kNeverSeen, kNow, kRobot, kStates, kToday, play, state } from './robots.mjs'
+import { kBlindLongAgo, kBlindStates, kForgotten, kHeld, kNeverSeen, kNow, kRobot, kStates, kToday, play, state } from './robots.mjs'
 import { kSizes, pictures } from './pictures.mjs'
 import { expect, expectSoon, file, isAccessible, kSchemes, statusOfStub, stubbed, suite } from './session.mjs'
 
@@ -211,6 +211,19 @@ async function neverCallsWellWhatWasNeverSeen(page, server) {
   await page.waitForFunction(() => [...window.drawn].some((text) => text.startsWith('? image_')) && window.drawn.has('never seen'))
 }
 
+// Of an earlier moment, too, nobody can say that a robot was well while a rule was blind.
+async function callsNoPastWell(page, server) {
+  play(server, kBlindLongAgo)
+  const explanation = page.getByRole('region', { name: 'Explanation' })
+  await explanation.getByRole('heading', { name: 'SegmentationBad is blind' }).waitFor()
+  await page.getByRole('slider', { name: 'Moment to look at' }).press('ArrowLeft')
+  await explanation.getByText('No rule sees a failure at this moment. SegmentationBad is blind.').waitFor()
+  await page.getByRole('slider', { name: 'Moment to look at' }).press('Home')
+  await explanation.getByText('No rule sees a failure at this moment.', { exact: true }).waitFor()
+  expect((await explanation.getByText('All is well').count()) === 0, 'a moment that nobody can judge is called well')
+  await isAccessible(page)
+}
+
 // Notes each frame in which the status bar and a star disagree, as it is painted: observers of sizes come after all else of a frame.
 function watchFrames() {
   const seen = (window.seenFrames = { count: 0, wrong: [] })
@@ -285,6 +298,7 @@ await suite(async () => {
   await stubbed(kCalls, asksAgain, kToday)
   await stubbed(kCalls, everyState, kToday)
   await stubbed(kCalls, neverCallsWellWhatWasNeverSeen, kToday)
+  await stubbed(kCalls, callsNoPastWell, kToday)
   await stubbed(kCalls, neverSaysTwoThings, kToday)
   await stubbed(kCalls, isNeverOldInSecret)
 })

@@ -20,7 +20,7 @@ const path = file('lamp.rules')
 writeFileSync(path, kRules)
 
 async function conflicts(page) {
-  const drawing = page.getByText('Rules that are in one another’s way')
+  const drawing = page.getByText('Conflicting rules')
   await drawing.waitFor()
   await page.getByText('TooDark, TooBright', { exact: true }).waitFor()
   expect((await page.locator('path.arc-undo').count()) === 1, 'the oscillation is not drawn')
@@ -72,7 +72,7 @@ async function run(page) {
   await picture(page, 'single-run')
   const slider = single.getByRole('slider')
   await slider.press('Home')
-  await single.getByText('Nothing yet.').waitFor()
+  await single.getByText('No events yet.').waitFor()
   await slider.press('End')
   await resolved.first().waitFor()
 }
@@ -99,7 +99,7 @@ async function opened(page) {
   await log.getByText('it inspects').waitFor()
   await single.getByLabel('who managed').selectOption('culprit')
   await single.getByRole('button', { name: 'Play it again' }).click()
-  await single.getByText('All is well').waitFor()
+  await single.getByText('No rule sees a failure').waitFor()
   await log.getByText('thruster 1 fails').waitFor()
   await log.getByText(/ resolved by /).first().waitFor()
 }

@@ -83,7 +83,7 @@ export async function writesThreeRules() {
     await press('+ Rule')
     await fill('rule', 'FusionSlow')
     await choose('criticality', 'WARNING')
-    await choose('what is looked at', 'a topic comes less often per second than')
+    await choose('what is looked at', 'the rate of a topic, in Hz, is below')
     await fill('its name', '/fused')
     await one('lighter', '70', 'set_parameter', { parameter: 'scale', value: '0.5' })
     await press('+ Strategy')
