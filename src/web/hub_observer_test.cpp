@@ -70,7 +70,7 @@ TEST(HubObserver, TellsAProcessThatIsStoppedFromOneThatIsGone) {
   EXPECT_EQ(state["components"][1]["process"], "gone");
 }
 
-// Of the 300 ms from the detection to the cause's name on the page: at most an eighth.
+// A page has 300 ms from the detection to the cause's name. The wait takes at most an eighth of them.
 TEST(HubObserver, TellsTheStateSoonAfterAnEvent) {
   static_assert(8 * HubObserver::kSoon <= std::chrono::milliseconds(300));
   const auto seen = [](ProcessState process) {

@@ -23,7 +23,7 @@ export const kWords: Record<Criticality, string> = {
 const kNanosecond = 1e-9 // s
 const signed = (log_odds: number) => `${log_odds < 0 ? '−' : '+'}${Math.abs(log_odds).toFixed(1)}`
 
-// Of culprit's own questions. They are shown by themselves: an answer is no onset, and has no weight.
+// An answer to a question of culprit's. It has a list of its own, since it is no onset and has no weight.
 const isAnswer = ({ source }: Evidence) => source === 'answer'
 
 function EvidenceList({ evidence }: { evidence: Evidence[] }) {
@@ -424,7 +424,7 @@ function BlindRules() {
 
 const sentence = (text: string) => text.charAt(0).toUpperCase() + text.slice(1) + (/[.?!]$/.test(text) ? '' : '.')
 
-// Of another moment only the events are known: no alarm is not health.
+// Only events are known about another moment, and no alarm is not health.
 function NoFailureThen({ view }: { view: View }) {
   const blind = [...view.situation.value.blind]
   return (

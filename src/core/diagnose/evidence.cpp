@@ -164,7 +164,7 @@ std::vector<PieceOfEvidence> evidence_for(std::size_t j, std::size_t i, const Ot
 
 namespace {
 
-// Nothing if it is unknown what came of the question: culprit was deaf meanwhile.
+// Empty if the outcome of the question is unknown: culprit was deaf meanwhile.
 std::optional<Evidence> answer_of(const std::string& name, const ComponentState& state, Time now) {
   const Questioned& questioned = state.questioned;
   const auto told = [&](const char* what, Time when) {

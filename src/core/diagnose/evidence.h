@@ -38,8 +38,8 @@ struct PieceOfEvidence {
 std::vector<PieceOfEvidence> evidence_for(std::size_t j, std::size_t i, const Otherwise& otherwise,
                                           const Examination& found, const Knowledge& knowledge);
 
-// What culprit asked since the failure began: its component and those upstream, and how each of them answered. The latest
-// kMostQuestions, newest first. Weight 0: a component that does not answer counts as a trouble (trouble.h).
+// The latest questions, at most kMostQuestions, that culprit put to the failure's components and to those upstream since it
+// began, with the answers; newest first. Weight 0: a component that does not answer counts as a trouble (trouble.h).
 std::vector<Evidence> answers_about(RuleId failure, const Knowledge& knowledge);
 
 }  // namespace culprit::diagnose
