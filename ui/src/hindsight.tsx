@@ -118,18 +118,18 @@ function Result() {
     <>
       {answer.missing.length > 0 && (
         <p class="sick" role="alert">
-          ▲ Not recorded, because the running rules did not read it: {answer.missing.join(', ')}. Conditions on it are unknown here.
+          ▲ Not recorded, because the rules of that time did not read it: {answer.missing.join(', ')}. Conditions on it are unknown here.
         </p>
       )}
       <Timeline view={view} label="Failures and repairs under these rules" />
-      {rules.length === 0 && <p>Neither these rules nor the running ones saw a failure in that time.</p>}
+      {rules.length === 0 && <p>Neither these rules nor the rules of that time saw a failure.</p>}
       {rules.length > 0 && (
         <table>
           <thead>
             <tr>
               <th scope="col">rule</th>
               <th scope="col">these rules</th>
-              <th scope="col">the running rules</th>
+              <th scope="col">the rules of that time</th>
             </tr>
           </thead>
           <tbody>

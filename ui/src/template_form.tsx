@@ -67,7 +67,7 @@ function FillPack({ template, document, change, close }: Props & { template: Tem
   const add = async () => {
     const why = await change((d) => withUse(d, template, given))
     if (why !== null) return tell({ text: `Not taken: ${why}`, isTrouble: true })
-    tell({ text: `${name}: added.${isNew ? ' Say above who starts its component.' : ''}`, undo })
+    tell({ text: `${name}: added.${isNew ? ' Choose the owner of its component above.' : ''}`, undo })
     close()
   }
   return (
@@ -112,7 +112,7 @@ export function Templates({ document, change }: Props) {
         or begin with{' '}
         <select aria-label="Begin with a template" value={chosen} onChange={(e) => choose(e.currentTarget.value)}>
           <option value="">what often goes wrong …</option>
-          <optgroup label="Cookbook: rules to make one’s own">
+          <optgroup label="Cookbook: rules to adapt">
             {kTemplates.map((t) => (
               <option>{t.title}</option>
             ))}
