@@ -171,8 +171,8 @@ std::optional<Evidence> answer_of(const std::string& name, const ComponentState&
     return Evidence{EvidenceSource::kAnswer, name + what, now - when};
   };
   if (state.answered >= questioned.at) return told(" answered", state.answered);
-  if (questioned.is_open) return told(" was asked, and may still answer", questioned.at);
   if (questioned.unanswered) return told(" did not answer", *questioned.unanswered);
+  if (questioned.is_open) return told(" was asked, and may still answer", questioned.at);
   if (questioned.is_pointless) return told(" did not answer, nor ever before", questioned.at);
   return std::nullopt;
 }

@@ -44,6 +44,24 @@ struct Navigation {
   TestRobot robot;
 };
 
+// What the last decision about the failure says that culprit asked, and how it was answered.
+std::vector<std::string> answers_in(const TestRobot& robot) {
+  std::vector<std::string> answers;
+  const auto read = [&](const auto& what) {
+    if constexpr (requires { what.suspects; }) {
+      if (what.suspects.empty()) return;
+      answers.clear();
+      for (const Suspect& suspect : what.suspects) {
+        for (const Evidence& each : suspect.evidence) {
+          if (each.source == EvidenceSource::kAnswer) answers.push_back(each.text);
+        }
+      }
+    }
+  };
+  for (const Event& event : robot.events) std::visit(read, event.what);
+  return answers;
+}
+
 TEST(Questions, ASupplierThatHangsIsFoundWithoutARuleAndItsConsumerIsLeftAlone) {
   Navigation navigation;
   navigation.answers_at_first();
@@ -56,6 +74,7 @@ TEST(Questions, ASupplierThatHangsIsFoundWithoutARuleAndItsConsumerIsLeftAlone) 
       << transcript(robot);
   EXPECT_EQ(robot.count("Nav waits: it depends on map, which hangs"), 1u) << transcript(robot);
   EXPECT_LE(robot.count_asked("map: ask"), 16u) << "once per 2 s at most" << transcript(robot);
+  EXPECT_EQ(answers_in(robot), std::vector<std::string>{"map did not answer"}) << transcript(robot);
 }
 
 // It was busy for a while, and its consumer has a fault of its own.
@@ -88,6 +107,8 @@ TEST(Questions, ThatAreAnsweredDelayARepairByNoMoreThanTheAnswer) {
   }
   ASSERT_TRUE(detected && chosen) << transcript(robot);
   EXPECT_EQ(*chosen - *detected, 5ms) << transcript(robot);
+  EXPECT_EQ(answers_in(robot), std::vector<std::string>{"map answered"})
+      << "it is no suspect, since it answered" << transcript(robot);
   robot.run_for(5s);
   EXPECT_TRUE(robot.works("nav")) << transcript(robot);
 }
