@@ -232,6 +232,7 @@ std::string counts_line(const WhatCulpritSays& said) {
   const auto names = list_at(said.robot, "components");
   Lines ill;
   Lines gone;
+  Lines unseen;
   for (std::size_t c = 0; c < std::min(components.size(), names.size()); ++c) {
     const std::string name = text_at(names[c], "name");
     const Json& alive = member_at(components[c], "alive");
@@ -239,6 +240,8 @@ std::string counts_line(const WhatCulpritSays& said) {
       gone.push_back(name);
     } else if (text_at(components[c], "health") != "OK") {
       ill.push_back(name);
+    } else if (text_at(components[c], "condition") == "never seen") {
+      unseen.push_back(name);
     }
   }
   std::size_t failing = 0;
@@ -253,9 +256,10 @@ std::string counts_line(const WhatCulpritSays& said) {
     return fmt::format(", {} {} ({})", names_of.size(), what, listed(first));
   };
   const std::size_t blind = blind_rules(said).size();
-  return fmt::format("{}{}{}; {}, {} with a failure{}", amount_of(components.size(), "component"),
-                     some(gone, "down"), some(ill, "affected"), amount_of(rules.size(), "rule"),
-                     failing, blind == 0 ? "" : fmt::format(", {} blind", blind));
+  return fmt::format("{}{}{}{}; {}, {} with a failure{}", amount_of(components.size(), "component"),
+                     some(gone, "down"), some(ill, "affected"), some(unseen, "never seen"),
+                     amount_of(rules.size(), "rule"), failing,
+                     blind == 0 ? "" : fmt::format(", {} blind", blind));
 }
 
 std::string event_line(const Json& event, double now, Colour colour) {

@@ -51,6 +51,16 @@ WhatCulpritSays ill() {
   return said;
 }
 
+TEST(StatusReport, NamesTheComponentsThatWereNeverSeen) {
+  WhatCulpritSays said = well();
+  said.state["components"][1] = parse_json(
+      R"({"health": "OK", "look": "NEVER_SEEN", "condition": "never seen", "alive": null, "present": false})");
+  EXPECT_THAT(all_of(said), HasSubstr("2 components, 1 never seen (fusion); 1 rule"));
+  // Until its time to show itself is over, nothing is known of it.
+  said.state["components"][1]["condition"] = "not seen yet";
+  EXPECT_THAT(all_of(said), HasSubstr("2 components; 1 rule"));
+}
+
 TEST(StatusReport, SaysThatAllIsWell) {
   EXPECT_EQ(verdict_of(well()), Verdict::kWell);
   EXPECT_THAT(all_of(well()), HasSubstr("rover: all is well\n"));
