@@ -1,44 +1,14 @@
 #include "analyze/analyzer.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "analyze/backoff.h"
 #include "diagnose/timing.h"
 #include "knowledge/ambiguity.h"
-#include "knowledge/group_health.h"
 #include "knowledge/undoes.h"
 
 namespace culprit {
-namespace {
-
-// May the input's value come from the component? The sources of signals and diagnostics are
-// unknown.
-bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowledge) {
-  using Kind = Input::Kind;
-  switch (input.kind) {
-    case Kind::kRate:
-    case Kind::kAge:
-    case Kind::kPhi:
-    case Kind::kLoss:
-    case Kind::kGoals:
-    case Kind::kGoalAge:
-      return knowledge.graph.publishes(component, knowledge.rules[input.topic]);
-    case Kind::kAlive:
-    case Kind::kLifecycle:
-    case Kind::kCpu:
-    case Kind::kMemory:
-    case Kind::kLogs:
-      return input.component == component;
-    case Kind::kParameter:
-      return knowledge.rules.parameters[input.parameter.index].component == component;
-    default:
-      return true;
-  }
-}
-
-}  // namespace
 
 Analyzer::Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time discovered)
     : knowledge_(knowledge),
@@ -46,6 +16,7 @@ Analyzer::Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time d
       deadlines_(knowledge.rules.rules.size()),
       blind_(knowledge, {writes.blindness, writes.events}, start, discovered),
       detector_(knowledge, writes.states),
+      verdicts_(knowledge, detector_),
       left_off_(knowledge, writes.states),
       couplings_(knowledge, {writes.states, writes.couplings, writes.latencies}),
       lateness_(knowledge, writes.latencies),
@@ -152,7 +123,7 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
   detector_.evaluate(id, now);
   if (is_true(state.detection.trigger)) state.cleared_by.reset();
   if (is_false(state.detection.trigger) && state.left_off && !state.left_off->gone &&
-      !missing_group(id, now))
+      !verdicts_.missing_group(id, now))
     forget_left_off(id, now);
   blind_.evaluated(id, now);
 }
@@ -168,34 +139,7 @@ void Analyzer::forget_left_off(RuleId id, Time now) {
 // And its function is there again: a component of a group is of no use while the group is not active, but for
 // a pause, which somebody wishes.
 bool Analyzer::is_gone(RuleId id, Time now) const {
-  return detector_.is_cleared(id, now) && !missing_group(id, now);
-}
-
-std::optional<GroupId> Analyzer::missing_group(RuleId id, Time now) const {
-  for (const GroupId group : knowledge_.rules[id].groups) {
-    const GroupHealth health = health_of(knowledge_.rules[group], knowledge_.components, now);
-    if (health != GroupHealth::kActive && health != GroupHealth::kInactive) return group;
-  }
-  return std::nullopt;
-}
-
-// It brings up a group, or its rule reads the health of one: a member that works proves nothing.
-bool Analyzer::is_about_whole_group(StrategyId id) const {
-  const Strategy& strategy = knowledge_.rules[id];
-  const auto reads_group = [&](InputId input) {
-    const Input& read = knowledge_.rules[input];
-    return read.kind == Input::Kind::kSignal &&
-           std::holds_alternative<GroupId>(knowledge_.rules[read.signal].source);
-  };
-  return std::ranges::any_of(strategy.adaptations,
-                             [](const Adaptation& a) { return a.group.has_value(); }) ||
-         std::ranges::any_of(knowledge_.rules[strategy.rule].inputs, reads_group);
-}
-
-bool Analyzer::is_left_down(GroupId group, const Attempt& attempt, Time now) const {
-  const GroupHealth health = health_of(knowledge_.rules[group], knowledge_.components, now);
-  if (health == GroupHealth::kChanging) return false;
-  return health != GroupHealth::kUnknown || now >= later(attempt.deadline, kLostAfter);
+  return detector_.is_cleared(id, now) && !verdicts_.missing_group(id, now);
 }
 
 void Analyzer::detect(RuleId id, Time now) {
@@ -292,7 +236,7 @@ void Analyzer::watch_failing(RuleId id, Time now) {
       resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
     }
   } else if (!state.detection.trigger.known &&
-             now >= later(state.detection.trigger_since, kLostAfter)) {
+             now >= later(state.detection.trigger_since, DueVerdicts::kLostAfter)) {
     leave(id, now);
     write_.events.tell(now, FailureLost{id});
   }
@@ -309,7 +253,7 @@ void Analyzer::judge(RuleId id, Time now) {
     case Attempt::Stage::kWaiting:
       break;
     case Attempt::Stage::kSuspended:
-      if (!has_components_back(attempt)) break;
+      if (!verdicts_.has_components_back(attempt)) break;
       attempt.stage = Attempt::Stage::kWaiting;
       attempt.effective = now;
       break;
@@ -337,85 +281,15 @@ void Analyzer::judge(RuleId id, Time now) {
         (!state.standing.empty() && attempt.effective <= state.search.last_resort_at);
   }
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
-  const Duration impact =
-      std::max(duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules),
-               knowledge_.latencies.patience(id));
-  const Time given = std::max({later(attempt.effective, impact), shows_from(attempt),
-                               knowledge_.signals.heard_again_by(id)});
-  attempt.deadline = later(given, knowledge_.signals.latency(id));
-  const auto awaited =
-      is_about_whole_group(attempt.strategy) ? missing_group(id, now) : std::nullopt;
-  if (knowledge_.rules[id].policies.on_change || (detector_.is_cleared(id, now) && !awaited))
-    return succeed(id, now);
-  const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
-  const bool is_clearing =
-      is_false(state.detection.trigger) && !(awaited && is_left_down(*awaited, attempt, now));
-  if (is_suspended || now < attempt.deadline || is_clearing) return;
-  if (state.detection.trigger.known || now >= later(attempt.deadline, kLostAfter) ||
-      holds_up_more_critical(attempt.strategy))
-    fail(id, now);
-}
-
-// A started component has to make the publishers that it had, for which it may open a device first.
-// It has to discover its publishers; its subscribers have to discover it, too, where the rule reads
-// from them. READY says how long it may take until its first message.
-Time Analyzer::shows_from(const Attempt& attempt) const {
-  const Strategy& strategy = knowledge_.rules[attempt.strategy];
-  const auto is_read = [&](ComponentId component) {
-    const auto& inputs = knowledge_.rules[strategy.rule].inputs;
-    return std::ranges::any_of(
-        inputs, [&](InputId id) { return may_be_of(component, knowledge_.rules[id], knowledge_); });
-  };
-  std::vector<ComponentId> hearing;
-  Time speaks = kLongAgo;
-  for (const Adaptation& adaptation : strategy.adaptations) {
-    if (!launches(adaptation)) continue;
-    hearing.push_back(adaptation.component);
-    const ComponentState& started = knowledge_.components[adaptation.component];
-    if (is_read(adaptation.component)) speaks = std::max(speaks, started.awaits_ends_until);
-    if (is_silent_since_its_start(adaptation.component, strategy.rule))
-      speaks = std::max(speaks, later(std::min(attempt.first_change, attempt.effective),
-                                      knowledge_.rules[adaptation.component].ready));
-    if (is_read(adaptation.component) && started.ends_back > started.node_seen)
-      speaks = std::max(speaks, later(started.ends_back, knowledge_.finding));
-    const auto& downstream = knowledge_.graph.downstream(adaptation.component);
-    std::copy_if(downstream.begin(), downstream.end(), std::back_inserter(hearing), is_read);
+  attempt.deadline = verdicts_.deadline(attempt);
+  switch (verdicts_.verdict(attempt, now)) {
+    case DueVerdicts::Verdict::kNotYet:
+      return;
+    case DueVerdicts::Verdict::kSucceeds:
+      return succeed(id, now);
+    case DueVerdicts::Verdict::kFails:
+      return fail(id, now);
   }
-  const Time hears = std::min(knowledge_.can_hear_from(hearing), later(attempt.effective, kInputs));
-  return std::max(hears, speaks);
-}
-
-// Does the rule wait for a topic of the component that nothing came on since its process began? It may make its
-// publisher late.
-bool Analyzer::is_silent_since_its_start(ComponentId component, RuleId rule) const {
-  const Time begun = knowledge_.components[component].node_seen;
-  bool is_silent = false;
-  for (const InputId id : knowledge_.rules[rule].inputs) {
-    const Input& input = knowledge_.rules[id];
-    if (!diagnose::watches_a_topic(input)) continue;
-    const bool has_publisher = knowledge_.graph.publisher_count(knowledge_.rules[input.topic]) > 0;
-    if (has_publisher && !may_be_of(component, input, knowledge_)) continue;
-    const auto& last = knowledge_.signals.rhythm(input.topic).last;
-    if (last && *last >= begun) return false;
-    is_silent = true;
-  }
-  return is_silent;
-}
-
-bool Analyzer::holds_up_more_critical(StrategyId strategy) const {
-  const auto& adapted = knowledge_.rules[strategy].components;
-  const syntax::Criticality level = criticality(knowledge_.rules[strategy].rule);
-  const auto adapts_it_too = [&](StrategyId other) {
-    const auto& components = knowledge_.rules[other].components;
-    return std::find_first_of(components.begin(), components.end(), adapted.begin(),
-                              adapted.end()) != components.end();
-  };
-  const auto& active = knowledge_.states.active();
-  return std::any_of(active.begin(), active.end(), [&](RuleId id) {
-    const auto& strategies = knowledge_.rules[id].strategies;
-    return criticality(id) > level && knowledge_.states[id].phase == RulePhase::kFailing &&
-           std::any_of(strategies.begin(), strategies.end(), adapts_it_too);
-  });
 }
 
 void Analyzer::end_attempt(RuleId id, Time now) {
@@ -451,28 +325,14 @@ void Analyzer::make_way(RuleId id, StrategyId other, Time now) {
   schedule(id, now);
 }
 
-bool Analyzer::has_components_back(const Attempt& attempt) const {
-  const auto& components = knowledge_.rules[attempt.strategy].components;
-  return std::all_of(components.begin(), components.end(),
-                     [&](ComponentId c) { return knowledge_.states.reservation(c) == nullptr; });
-}
-
-// Was the failure gone before the attempt had changed anything?
-bool Analyzer::went_away_before(const Attempt& attempt) const {
-  const RuleId id = knowledge_.rules[attempt.strategy].rule;
-  const RuleState& state = knowledge_.states[id];
-  return !knowledge_.rules[id].policies.on_change && is_false(state.detection.trigger) &&
-         state.detection.trigger_since < attempt.first_change;
-}
-
 void Analyzer::succeed(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   // As a failure would not count either.
-  state.attempt->is_ambiguous |= unheard_behind(*state.attempt).has_value();
+  state.attempt->is_ambiguous |= verdicts_.unheard_behind(*state.attempt).has_value();
   const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
   // The strategy that reserves its components meanwhile is as likely the cause.
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
-  const bool caused = !is_suspended && !went_away_before(attempt);
+  const bool caused = !is_suspended && !verdicts_.went_away_before(attempt);
   if (caused) couplings_.resolved(attempt, !attempt.is_ambiguous, now);
   couplings_.ended(attempt, now);
   const auto& before = state.tried_alone;
@@ -486,7 +346,7 @@ void Analyzer::succeed(RuleId id, Time now) {
   }
   state.tried_alone.reset();
   // Its components are free for what brings up the group.
-  if (!knowledge_.rules[id].policies.on_change && missing_group(id, now)) {
+  if (!knowledge_.rules[id].policies.on_change && verdicts_.missing_group(id, now)) {
     ++state.search.attempts;
     write_.states.set_tried(attempt.strategy, true);
     if (caused) state.cleared_by = attempt;
@@ -554,14 +414,6 @@ void Analyzer::note_coincidence(RuleId id) {
   write_.coincidences.began(id, others);
 }
 
-std::optional<ComponentId> Analyzer::unheard_behind(const Attempt& attempt) const {
-  const Strategy& strategy = knowledge_.rules[attempt.strategy];
-  const auto own = std::ranges::find_if(strategy.components,
-                                        [&](ComponentId c) { return knowledge_.is_unheard(c); });
-  return own != strategy.components.end() ? std::optional(*own)
-                                          : knowledge_.unheard_behind(strategy.rule);
-}
-
 // It ends without a verdict. A strategy that avoided the unreachable computer, and did not help, is
 // not retried meanwhile.
 void Analyzer::excuse(RuleId id, ComponentId unheard, Time now) {
@@ -572,17 +424,6 @@ void Analyzer::excuse(RuleId id, ComponentId unheard, Time now) {
   attempt.stage = Attempt::Stage::kUndoing;
   write_.events.tell(now, StrategyAbandoned{attempt.strategy, knowledge_.rules[unheard].name + " " +
                                                                   knowledge_.why_unheard(unheard)});
-}
-
-// The component that the attempt could not start, since something that its start needs is missing.
-std::optional<ComponentId> Analyzer::barred_behind(const Attempt& attempt) const {
-  if (attempt.obstacle.empty()) return std::nullopt;
-  for (const Adaptation& adaptation : knowledge_.rules[attempt.strategy].adaptations) {
-    const bool starts = launches(adaptation);
-    if (starts && !knowledge_.components[adaptation.component].start_missing.empty())
-      return adaptation.component;
-  }
-  return std::nullopt;
 }
 
 // A start that cannot happen is no attempt: the strategy is begun again once it can.
@@ -618,21 +459,23 @@ void Analyzer::forgive_unheard(Time now) {
 void Analyzer::fail(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   Attempt& attempt = *state.attempt;
-  if (const auto unheard = attempt.has_no_failure ? std::nullopt : unheard_behind(attempt))
+  if (const auto unheard =
+          attempt.has_no_failure ? std::nullopt : verdicts_.unheard_behind(attempt))
     return excuse(id, *unheard, now);
-  if (const auto barred = attempt.has_no_failure ? std::nullopt : barred_behind(attempt))
+  if (const auto barred = attempt.has_no_failure ? std::nullopt : verdicts_.barred_behind(attempt))
     return excuse_barred(id, *barred, now);
   if (!attempt.has_no_failure) {
     write_.states.set_tried(attempt.strategy, true);
     ++state.search.attempts;
-    if (!went_away_before(attempt)) outcomes_.judged(attempt, false, now);
+    if (!verdicts_.went_away_before(attempt)) outcomes_.judged(attempt, false, now);
     state.tried_alone.reset();
     if (!attempt.is_ambiguous && attempt.effective != kNever) {
       state.tried_alone = {attempt.strategy, attempt.effective};
       write_.latencies.stays(id, now - attempt.effective);
     }
   }
-  const auto group = is_false(state.detection.trigger) ? missing_group(id, now) : std::nullopt;
+  const auto group =
+      is_false(state.detection.trigger) ? verdicts_.missing_group(id, now) : std::nullopt;
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
                              : group ? "group " + knowledge_.rules[*group].name + " is not active"
                              : state.detection.trigger.known
@@ -742,21 +585,13 @@ void Analyzer::schedule(RuleId id, Time now) {
     if (at > now) next = std::min(next, at);
   };
   if (!state.detection.trigger.known && state.phase != RulePhase::kQuiet)
-    want(later(state.detection.trigger_since, kLostAfter));
+    want(later(state.detection.trigger_since, DueVerdicts::kLostAfter));
   if (state.phase == RulePhase::kFailing) want(state.search.retry_at);
   want(last_resorts_.next_time(id));
   // A process that begins anew has lost what a last resort has changed, and may do what was refused.
   const bool awaits_process = !state.standing.empty() || !state.search.refused.empty();
   if (awaits_process && state.phase != RulePhase::kQuiet) want(later(now, knowledge_.rules.cycle));
-  if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
-    want(state.attempt->deadline);
-    want(later(state.attempt->deadline, kLostAfter));
-    // Until the wait ends; a more critical failure may come before.
-    if (!state.detection.trigger.known || shows_from(*state.attempt) > now)
-      want(later(now, knowledge_.rules.cycle));
-  }
-  if (state.attempt && state.attempt->stage == Attempt::Stage::kSuspended)
-    want(later(now, knowledge_.rules.cycle));
+  if (state.attempt) want(verdicts_.next(*state.attempt, now));
   deadlines_.set(id.index, next);
 }
 

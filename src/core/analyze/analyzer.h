@@ -11,11 +11,7 @@
 //              one: its strategies stay tried, and its attempts and rounds go on counting. One
 //              that keeps coming back is reported as flapping
 //
-// A strategy under way succeeds when its failure is resolved, once its adaptations took effect. It
-// fails at its deadline: its impact in cycles after they took effect, plus the latency of what the
-// trigger reads. The latency of a signal is two of its periods, so that a fresh reading comes first;
-// five seconds while its period is not known. After a start or restart, the deadline allows for
-// discovery of the publishers that the component reads, and of its subscribers (kInputs at most).
+// When the verdict on a strategy under way is due, and which it is: due_verdicts.h.
 //
 // A round of strategies is followed by a back-off that doubles each time. After ATTEMPTS strategies
 // (or as many rounds without any valid strategy) the rule is exhausted. A process that is known to be gone
@@ -38,6 +34,7 @@
 #include "analyze/blind_watch.h"
 #include "analyze/coupling_watch.h"
 #include "analyze/detector.h"
+#include "analyze/due_verdicts.h"
 #include "analyze/last_resorts.h"
 #include "analyze/lateness_watch.h"
 #include "analyze/left_off.h"
@@ -55,11 +52,6 @@ class Analyzer {
   // doubled each time.
   static constexpr Duration kFirstPauseOfStarts = std::chrono::seconds(10);
   static constexpr Duration kLongestPauseOfStarts = std::chrono::minutes(5);
-  // A failing rule whose trigger is unknown for longer is no longer called failing: whether it is
-  // cannot be known.
-  static constexpr Duration kLostAfter = std::chrono::seconds(30);
-  // The longest time that a verdict on a started component waits for its inputs.
-  static constexpr Duration kInputs = std::chrono::seconds(14);
   // A failure that is back within so long may be an effect that its cause brought back.
   static constexpr Duration kRecurs = std::chrono::seconds(5);
   // A failure that its own strategy cleared goes on if it is back within so long; later it begins anew.
@@ -139,11 +131,6 @@ class Analyzer {
   void evaluate_trigger(RuleId id, Time now);
   void forget_left_off(RuleId id, Time now);
   bool is_gone(RuleId id, Time now) const;
-  // A group that the rule is about and that is not active; nothing: there is none.
-  std::optional<GroupId> missing_group(RuleId id, Time now) const;
-  bool is_about_whole_group(StrategyId strategy) const;
-  // The group stays as it is, and that is not active: no member is changing.
-  bool is_left_down(GroupId group, const Attempt& attempt, Time now) const;
 
   bool is_proven(Time gone, Time now) const;
   void detect(RuleId id, Time now);
@@ -152,33 +139,21 @@ class Analyzer {
   void unmask_effects_of(RuleId gone, Time now);
   Time masked_until(RuleId effect) const;
   void judge(RuleId id, Time now);
-  // Its effect cannot be seen before.
-  Time shows_from(const Attempt& attempt) const;
-  bool is_silent_since_its_start(ComponentId component, RuleId rule) const;
   void end_attempt(RuleId id, Time now);
   void succeed(RuleId id, Time now);
   void fail(RuleId id, Time now);
-  std::optional<ComponentId> unheard_behind(const Attempt& attempt) const;
-  std::optional<ComponentId> barred_behind(const Attempt& attempt) const;
   void excuse_barred(RuleId id, ComponentId barred, Time now);
   void excuse(RuleId id, ComponentId unheard, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);
   void exhaust_if_spent(RuleId id, Time now);
-  bool has_components_back(const Attempt& attempt) const;
   void take_back_starts(RuleId id);
   void note_ready(RuleId id, const Attempt& attempt);
   void exhaust(RuleId id, Time now);
   void stay_exhausted(RuleId id, Time now);
-  bool went_away_before(const Attempt& attempt) const;
   void note_latency(RuleId id, Time effective);
   void note_transient(RuleId id);
   void note_that_it_stayed(RuleId id);
   void note_coincidence(RuleId id);
-  // Is there a more critical failure for which the same component would be adapted?
-  bool holds_up_more_critical(StrategyId strategy) const;
-  syntax::Criticality criticality(RuleId id) const {
-    return knowledge_.rules[id].policies.criticality;
-  }
   void schedule(RuleId id, Time now);
 
   const Knowledge& knowledge_;
@@ -186,6 +161,7 @@ class Analyzer {
   Deadlines deadlines_;  // by RuleId
   BlindWatch blind_;
   Detector detector_;
+  DueVerdicts verdicts_;
   LeftOffSearches left_off_;
   CouplingWatch couplings_;
   LatenessWatch lateness_;

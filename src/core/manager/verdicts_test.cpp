@@ -1,7 +1,7 @@
 // When the manager judges a strategy.
 #include <gtest/gtest.h>
 
-#include "analyze/analyzer.h"
+#include "analyze/due_verdicts.h"
 #include "manager/test_robot.h"
 
 namespace culprit::test {
@@ -75,7 +75,7 @@ RULE Blurred
     if (attempt) deadline = attempt->deadline;
     robot.run_for(1ms);
   }
-  EXPECT_EQ(robot.now, deadline + Analyzer::kLostAfter) << transcript(robot);
+  EXPECT_EQ(robot.now, deadline + DueVerdicts::kLostAfter) << transcript(robot);
 }
 
 // ---- what was started has to find what it reads
