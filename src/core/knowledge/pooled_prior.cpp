@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/log_gamma.h"
+
 namespace culprit {
 namespace {
 
@@ -64,12 +66,6 @@ struct Mean {
     if (weight > 0) value += (other - value) * its_weight / weight;
   }
 };
-
-// std::lgamma writes a global variable, which threads would share.
-double log_gamma(double x) {
-  int sign = 0;
-  return lgamma_r(x, &sign);
-}
 
 double log_beta(double a, double b) { return log_gamma(a) + log_gamma(b) - log_gamma(a + b); }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "base/log_gamma.h"
 #include "language/checker.h"
 
 namespace culprit::study::rca {
@@ -13,7 +14,7 @@ namespace {
 double tail(int needed, int window, double wrong) {
   double sum = 0;
   for (int k = needed; k <= window; ++k) {
-    sum += std::exp(std::lgamma(window + 1) - std::lgamma(k + 1) - std::lgamma(window - k + 1)) *
+    sum += std::exp(log_gamma(window + 1) - log_gamma(k + 1) - log_gamma(window - k + 1)) *
            std::pow(wrong, k) * std::pow(1 - wrong, window - k);
   }
   return sum;
