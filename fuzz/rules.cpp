@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "language/evaluate.h"
-#include "language/live_checks.h"
 #include "language/test_example_robot.h"
+#include "live_checks/live_checks.h"
 
 namespace {
 
@@ -89,7 +89,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
              [&](const std::string& file, const std::string&) { return load(file, text); });
   look_at_origins(rules.source);
   for (const Checked& checked :
-       {check(rules, Strictness::kStrict), check_against(example_robot(), rules)}) {
+       {check(rules, Strictness::kStrict), live_checks::check_against(example_robot(), rules)}) {
     for (const Diagnostic& diagnostic : checked.diagnostics) look_at(diagnostic, rules.source);
     if (checked.rules) run_all(*checked.rules);
   }

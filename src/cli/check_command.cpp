@@ -12,11 +12,11 @@
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
 #include "cli/heap_room.h"
-#include "language/live_checks.h"
-#include "language/live_findings.h"
 #include "live/preflight.h"
 #include "live/robot_survey.h"
 #include "live/setups.h"
+#include "live_checks/live_checks.h"
+#include "live_checks/live_findings.h"
 #include "ros2/options.h"
 #include "rule_files/rule_files.h"
 #include "terminal/console.h"
@@ -65,7 +65,7 @@ void print_text(const Expansion& file, const Checked& checked) {
 }
 
 void print_findings(const RuleSet& rules, const LiveInventory& robot) {
-  for (const std::string& line : findings(rules, robot)) fmt::print("  {}\n", line);
+  for (const std::string& line : live_checks::findings(rules, robot)) fmt::print("  {}\n", line);
 }
 
 // Looks up the robot's names that the files refer to.
@@ -113,7 +113,7 @@ void check_launches(const Expansion& file, Checked& checked) {
                troubles.front().why);
     return;
   }
-  for (Diagnostic& d : cannot_launch(checked.file, rules, troubles))
+  for (Diagnostic& d : live_checks::cannot_launch(checked.file, rules, troubles))
     checked.diagnostics.push_back(std::move(d));
   std::stable_sort(
       checked.diagnostics.begin(), checked.diagnostics.end(),
@@ -148,7 +148,8 @@ int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& opt
   Checked checked;
   for (Expansion& file : all) {
     checked = {};  // so that there are never two
-    checked = robot ? check_against(*robot, file, strictness) : check(file, strictness);
+    checked =
+        robot ? live_checks::check_against(*robot, file, strictness) : check(file, strictness);
     if (!checked.rules) exit_code = kFailed;
     if (!robot && checked.rules) check_launches(file, checked);
     if (checked.rules) check_emptiness(file, checked);

@@ -7,11 +7,11 @@
 #include <fmt/core.h>
 
 #include "base/ros_names.h"
-#include "language/live_checks.h"
-#include "language/live_findings.h"
 #include "link/service_call.h"
 #include "live/robot_survey.h"
 #include "live/setups.h"
+#include "live_checks/live_checks.h"
+#include "live_checks/live_findings.h"
 #include "owners/found_owner.h"
 #include "owners/launch_difference.h"
 #include "owners/parameter_file.h"
@@ -38,8 +38,8 @@ bool look_until(Enough is_enough, Time end, const std::stop_token& stop) {
 
 std::string report(const Source& source, const RuleSet& rules, const LiveInventory& robot,
                    std::uint32_t domain) {
-  const auto found = findings(rules, robot);
-  std::vector<Diagnostic> missing = missing_on(robot, source);
+  const auto found = live_checks::findings(rules, robot);
+  std::vector<Diagnostic> missing = live_checks::missing_on(robot, source);
   const auto others = std::stable_partition(
       missing.begin(), missing.end(),
       [](const Diagnostic& each) { return each.code != Code::kRunsOtherwise; });
@@ -208,8 +208,9 @@ LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& s
   survey.ask_for(std::move(interest));
   const auto all_found = [&] {
     const LiveInventory robot = survey.inventory();
-    return std::all_of(rules.begin(), rules.end(),
-                       [&](const RuleSet* each) { return is_all_found(*each, robot); });
+    return std::all_of(rules.begin(), rules.end(), [&](const RuleSet* each) {
+      return live_checks::is_all_found(*each, robot);
+    });
   };
   look_until(all_found, later(live_now(), wait), stop);
   LiveInventory robot = survey.inventory();

@@ -10,8 +10,8 @@
 
 #include "language/evaluate.h"
 #include "language/explanations.h"
-#include "language/live_checks.h"
 #include "language/test_example_robot.h"
+#include "live_checks/live_checks.h"
 
 namespace culprit {
 namespace {
@@ -275,8 +275,9 @@ TEST(Checker, SaysWhatTheGoldenFilesSay) {
     const bool is_strict = name.starts_with("strict_");
     const Strictness strictness = is_strict ? Strictness::kStrict : Strictness::kLenient;
     const bool has_robot = name.starts_with("live_");
-    const std::string said = all_messages(
-        rules.source, has_robot ? check_against(example_robot(), rules) : check(rules, strictness));
+    const std::string said =
+        all_messages(rules.source, has_robot ? live_checks::check_against(example_robot(), rules)
+                                             : check(rules, strictness));
     for (const Explanation& e : explanations()) {
       if (said.find("[" + to_string(e.code) + "]") != std::string::npos) unseen.erase(e.code);
     }

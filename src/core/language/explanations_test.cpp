@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "language/live_checks.h"
 #include "language/test_example_robot.h"
+#include "live_checks/live_checks.h"
 
 namespace culprit {
 namespace {
@@ -98,8 +98,9 @@ std::vector<std::string> codes_of(const Explanation& e, const std::string& text)
   const auto strictness =
       e.title.ends_with("(--strict)") ? Strictness::kStrict : Strictness::kLenient;
   const bool needs_robot = e.why.find("The robot of the example:") != std::string::npos;
-  const Checked checked =
-      needs_robot ? check_against(example_robot(), rules, strictness) : check(rules, strictness);
+  const Checked checked = needs_robot
+                              ? live_checks::check_against(example_robot(), rules, strictness)
+                              : check(rules, strictness);
   for (const Diagnostic& d : checked.diagnostics) codes.push_back(to_string(d.code));
   return codes;
 }

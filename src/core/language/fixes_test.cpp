@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "language/live_checks.h"
 #include "language/test_example_robot.h"
+#include "live_checks/live_checks.h"
 
 namespace culprit {
 namespace {
@@ -161,7 +161,8 @@ TEST(Fixes, RemoveWhatTheyAreOfferedFor) {
     const Source source(entry.path().filename().string(),
                         std::string(std::istreambuf_iterator<char>(in), {}));
     const auto checked = [&](const Source& text) {
-      if (source.name().starts_with("live_")) return check_against(example_robot(), text);
+      if (source.name().starts_with("live_"))
+        return live_checks::check_against(example_robot(), text);
       const bool is_strict = source.name().starts_with("strict_");
       return check(text, is_strict ? Strictness::kStrict : Strictness::kLenient);
     };

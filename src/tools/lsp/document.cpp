@@ -1,6 +1,6 @@
 #include "lsp/document.h"
 
-#include "language/live_checks.h"
+#include "live_checks/live_checks.h"
 
 namespace culprit::lsp {
 namespace {
@@ -101,7 +101,7 @@ bool Document::compare_with(const LiveInventory& robot) {
   std::vector<Diagnostic> all = checked.diagnostics;
   // A robot without any node is one that is not there, and says nothing about the rules.
   if (checked.rules && !robot.nodes.empty())
-    check_live(whole_ ? whole_->file : file(), *checked.rules, robot, all);
+    live_checks::check_live(whole_ ? whole_->file : file(), *checked.rules, robot, all);
   const auto before = std::pair(std::move(diagnostics), std::move(elsewhere));
   tell(all);
   return before != std::pair(diagnostics, elsewhere);

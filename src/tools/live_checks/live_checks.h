@@ -13,7 +13,7 @@
 #include "language/rule_set.h"
 #include "language/syntax.h"
 
-namespace culprit {
+namespace culprit::live_checks {
 
 // Adds to `diagnostics`, which are those of check(), and keeps them in the order of the text.
 // Places that have a diagnostic already get none.
@@ -33,4 +33,4 @@ Checked check_against(const LiveInventory& robot, const Source& source,
 Checked check_against(const LiveInventory& robot, const Expansion& rules,
                       Strictness strictness = Strictness::kLenient);
 
-}  // namespace culprit
+}  // namespace culprit::live_checks

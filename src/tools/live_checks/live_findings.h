@@ -8,7 +8,7 @@
 #include "language/live_inventory.h"
 #include "language/rule_set.h"
 
-namespace culprit {
+namespace culprit::live_checks {
 
 // One line for each component, topic and signal that is there, in the order of the rules: "camera
 // is /robot/camera, active ✓", "/scan 10 Hz from /lidar ✓", "entropy = 0.03 ✓". A topic that is
@@ -18,4 +18,4 @@ std::vector<std::string> findings(const RuleSet& rules, const LiveInventory& rob
 // Whether the wait is over: each of them is there, with its rate or value.
 bool is_all_found(const RuleSet& rules, const LiveInventory& robot);
 
-}  // namespace culprit
+}  // namespace culprit::live_checks

@@ -1,12 +1,12 @@
-#include "language/live_findings.h"
+#include "live_checks/live_findings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "language/checker.h"
-#include "language/live_checks.h"
+#include "live_checks/live_checks.h"
 
-namespace culprit {
+namespace culprit::live_checks {
 namespace {
 
 using testing::ElementsAre;
@@ -80,4 +80,4 @@ TEST(LiveFindings, ToolsAndCulpritAreNoRobot) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::live_checks

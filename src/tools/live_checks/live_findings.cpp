@@ -1,11 +1,11 @@
-#include "language/live_findings.h"
+#include "live_checks/live_findings.h"
 
 #include <algorithm>
 #include <cstdio>
 
 #include "base/joined.h"
 
-namespace culprit {
+namespace culprit::live_checks {
 namespace {
 
 constexpr const char* kTick = " ✓";
@@ -64,4 +64,4 @@ bool is_all_found(const RuleSet& rules, const LiveInventory& robot) {
                      [&](const Signal& each) { return robot.value_of(each, rules).has_value(); });
 }
 
-}  // namespace culprit
+}  // namespace culprit::live_checks

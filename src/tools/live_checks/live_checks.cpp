@@ -1,4 +1,4 @@
-#include "language/live_checks.h"
+#include "live_checks/live_checks.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "language/occurrences.h"
 #include "language/parser.h"
 
-namespace culprit {
+namespace culprit::live_checks {
 namespace {
 
 using OccurrenceKind = Occurrence::Kind;
@@ -527,4 +527,4 @@ Checked check_against(const LiveInventory& robot, const Expansion& rules, Strict
   return check_against(robot, rules.source, strictness);
 }
 
-}  // namespace culprit
+}  // namespace culprit::live_checks
