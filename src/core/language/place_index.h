@@ -76,6 +76,12 @@ class PlaceIndex {
 
 inline std::size_t name_hash(std::string_view name) { return std::hash<std::string_view>()(name); }
 
+// Of two parts of what an entry is found by.
+inline std::size_t mixed_hash(std::size_t hash, std::size_t more) {
+  hash = (hash ^ more) * 0x9E3779B97F4A7C15;
+  return hash ^ (hash >> 29);
+}
+
 // The entry of `table` that is called so, where `by_name` has the names of its entries.
 template <class Entry>
 std::optional<std::uint32_t> place_of(std::string_view name, const std::vector<Entry>& table,

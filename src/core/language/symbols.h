@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "language/diagnostic.h"
+#include "language/owner_clauses.h"
 #include "language/place_index.h"
 #include "language/rule_set.h"
 #include "language/syntax.h"
@@ -29,7 +30,10 @@ class Symbols {
   static constexpr std::size_t kMaxComparisons = 200'000;
 
   Symbols(RuleSet& rules, Strictness strictness, std::vector<Diagnostic>& diagnostics)
-      : rules_(rules), strictness_(strictness), diagnostics_(diagnostics) {}
+      : rules_(rules),
+        strictness_(strictness),
+        diagnostics_(diagnostics),
+        owners_(rules, diagnostics) {}
 
   // Enters what the file declares. Duplicates are reported; the first one counts.
   void declare(const syntax::File& file);
@@ -79,13 +83,6 @@ class Symbols {
   bool first_declaration(const syntax::Name& name, const char* what);
   void declare_component(const syntax::Component& component);
   bool declare_node(const syntax::Name& node, const Component& component);
-  const Component* other_of_owner(std::string owner);
-  const Component* other_of_launch(const std::vector<std::string>& command);
-  void declare_launch(const syntax::Component& written, Component& component);
-  std::string declared_host(const syntax::Component& written);
-  void declare_engine(const syntax::Component& written, Component& component);
-  void declare_composition(const syntax::Component& written, Component& component);
-  SystemdUnit declared_unit(const syntax::Component& written);
   void check_field(const syntax::Name& field);
   void declare_signal(const syntax::Signal& signal);
   void declare_group(const syntax::Group& group);
@@ -103,15 +100,14 @@ class Symbols {
   RuleSet& rules_;
   Strictness strictness_;
   std::vector<Diagnostic>& diagnostics_;
+  OwnerClauses owners_;
   std::unordered_map<std::string, Constant> constants_;
   std::set<std::string> broken_signals_;  // and groups
   // Indexes into the tables of rules_.
   PlaceIndex components_, signals_, topics_, level_names_;  // by name
   PlaceIndex components_by_node_;                           // of those that are declared, the first
-  PlaceIndex components_by_launch_;                         // likewise
   PlaceIndex parameters_;                                   // by component and name
   PlaceIndex inputs_;                                       // by all but type and use
-  std::unordered_map<std::string, ComponentId> by_owner_;   // a unit or a container
   // Candidates for misspelt names; views into the tree and the keys above.
   std::vector<std::string_view> declared_components_;
   std::vector<std::string_view> declared_values_;  // constants and signals
