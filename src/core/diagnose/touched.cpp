@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/sort_unique.h"
 #include "diagnose/timing.h"
 
 namespace culprit::diagnose {
 namespace {
-
-void sort_unique(std::vector<ComponentId>& all) {
-  std::ranges::sort(all);
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-}
 
 // Does the strategy only deactivate the component, and activate it again later?
 bool only_pauses(const Strategy& strategy, ComponentId component) {

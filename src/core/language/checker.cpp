@@ -1,37 +1,39 @@
 #include "language/checker.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <set>
 #include <tuple>
 
+#include "base/sort_unique.h"
 #include "language/compiler.h"
 #include "language/condition_checks.h"
 #include "language/conflict_checks.h"
-#include "language/evaluate.h"
+#include "language/constants.h"
 #include "language/facts.h"
 #include "language/foreign_files.h"
 #include "language/likely_slips.h"
 #include "language/parser.h"
 #include "language/place_index.h"
-#include "language/request_text.h"
 #include "language/rule_checks.h"
 #include "language/start_checks.h"
+#include "language/strategy_entries.h"
+#include "language/typed_condition.h"
 #include "language/typing.h"
 
 namespace culprit {
 namespace {
 
-constexpr double kMaxImpact = 1e6;  // cycles
 constexpr std::int64_t kMaxCount = 1000;
 constexpr Duration kMaxCycle = std::chrono::hours(1);
-constexpr Duration kWithin = std::chrono::seconds(2);  // LASTRESORT without WITHIN
 constexpr int kDefaultRounds = 3;  // each strategy is tried this often before the rule is exhausted
 
 class Checker {
  public:
   Checker(const syntax::File& file, Strictness strictness, std::vector<Diagnostic>& diagnostics)
-      : file_(file), diagnostics_(diagnostics), symbols_(rules_, strictness, diagnostics) {}
+      : file_(file),
+        diagnostics_(diagnostics),
+        symbols_(rules_, strictness, diagnostics),
+        strategies_(rules_, symbols_, diagnostics) {}
 
   RuleSet check() {
     rules_.components.reserve(file_.components.size());
@@ -49,7 +51,7 @@ class Checker {
     const auto is_stray = [](const Diagnostic& d) { return d.code == Code::kUnknownStatement; };
     has_broken_declaration_ = diagnostics_.size() > said || has_broken_component() ||
                               std::any_of(diagnostics_.begin(), diagnostics_.end(), is_stray);
-    constants();
+    define_constants(file_, symbols_, diagnostics_);
     dependencies();
     infer();
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
@@ -86,80 +88,6 @@ class Checker {
       rules_.ignored_topics.push_back(topic.text);
   }
 
-  void constants() {
-    for (const syntax::Constant& constant : file_.constants) {
-      if (const auto* known = symbols_.constant(constant.name.text);
-          known != nullptr && !known->broken)
-        continue;
-      if (auto value = constant_value(constant))
-        symbols_.define_constant(constant.name, {std::move(*value), false});
-    }
-  }
-
-  std::optional<syntax::Literal> constant_value(const syntax::Constant& constant) {
-    if (is_comment(constant.value) || names_a_signal(constant.value)) return std::nullopt;
-    const auto typed = type_expression(constant.value, symbols_, diagnostics_);
-    if (!typed) return std::nullopt;
-    if (reads_inputs(*typed)) {
-      report(Code::kNotConstant, constant.value.span, "this changes at run time",
-             "a constant is made of constants");
-      return std::nullopt;
-    }
-    const Program program = compile(*typed);  // the slot borrows its text
-    const Slot slot = evaluate(program, {});
-    if (!slot.known) {
-      report(Code::kNoValue, constant.value.span, "this has no value",
-             "it divides by zero or overflows");
-      return std::nullopt;
-    }
-    if (typed->type == Type::kDuration) return Duration(slot.i);
-    return std::visit([](const auto& value) -> syntax::Literal { return value; },
-                      to_value(slot, typed->type));
-  }
-
-  // "75.0 -- degrees", which reads as two signs
-  bool is_comment(const syntax::Expression& e) {
-    if (e.kind != syntax::Expression::Kind::kBinary || e.op != syntax::Operator::kSubtract)
-      return false;
-    const syntax::Expression& right = e.children[1];
-    const std::uint32_t signs = right.span.begin - 1;
-    const bool is_so =
-        right.kind == syntax::Expression::Kind::kUnary && right.op == syntax::Operator::kNegate &&
-        right.children[0].kind == syntax::Expression::Kind::kName &&
-        e.children[0].span.end + 1 == signs && right.children[0].span.begin > signs + 2 &&
-        !symbols_.constant(right.children[0].name.text);
-    if (is_so)
-      diagnostics_.push_back({Code::kExtraText,
-                              Severity::kError,
-                              {signs, signs + 2},
-                              "no comment begins with '--'",
-                              "begin a comment with #",
-                              Edit{{signs, signs + 2}, "#"}});
-    return is_so;
-  }
-
-  // A constant must not create signals by naming them.
-  bool names_a_signal(const syntax::Expression& e) {
-    if (e.kind == syntax::Expression::Kind::kCall || e.kind == syntax::Expression::Kind::kName) {
-      const auto* constant = symbols_.constant(e.name.text);
-      const bool is_name = e.kind == syntax::Expression::Kind::kName;
-      const bool pure = e.name.text == "abs" || e.name.text == "min" || e.name.text == "max" ||
-                        e.name.text == "pow" || e.name.text == "sqrt";
-      if (is_name ? constant == nullptr : !pure) {
-        report(Code::kNotConstant, e.span, "'" + e.name.text + "' is no constant",
-               "a constant is made of numbers, texts and constants");
-        return true;
-      }
-      if (is_name && constant->broken) {
-        report(Code::kNotConstant, e.span, "'" + e.name.text + "' has no value yet",
-               "define it in a line before this one");
-        return true;
-      }
-    }
-    return std::any_of(e.children.begin(), e.children.end(),
-                       [&](const auto& c) { return names_a_signal(c); });
-  }
-
   void dependencies() {
     for (const syntax::Dependency& d : file_.dependencies) {
       const ComponentId consumer = symbols_.component(d.consumer);
@@ -183,7 +111,7 @@ class Checker {
 
   void interlocks() {
     for (const syntax::Interlock& written : file_.interlocks) {
-      if (auto typed = boolean(written.condition, "an INTERLOCK")) {
+      if (auto typed = typed_condition(written.condition, "an INTERLOCK", symbols_, diagnostics_)) {
         rules_.interlocks.push_back({compile(*typed), written.text});
         file_conditions_.push_back({"INTERLOCK", std::move(*typed)});
       }
@@ -192,7 +120,7 @@ class Checker {
 
   void drills() {
     for (const syntax::Interlock& written : file_.aborts) {
-      if (auto typed = boolean(written.condition, "an ABORT")) {
+      if (auto typed = typed_condition(written.condition, "an ABORT", symbols_, diagnostics_)) {
         rules_.aborts.push_back(written.text);
         file_conditions_.push_back({"ABORT", std::move(*typed)});
       }
@@ -204,7 +132,8 @@ class Checker {
                      {},
                      written.times};
       if (written.value) {
-        const auto value = constant_value({written.subject, *written.value});
+        const auto value =
+            constant_value({written.subject, *written.value}, symbols_, diagnostics_);
         if (!value) continue;
         if (std::holds_alternative<Duration>(*value)) {
           report(Code::kTypeMismatch, written.value->span, "a parameter is no duration",
@@ -264,7 +193,7 @@ class Checker {
     if (!written.has_broken_part) check_complete(written);
     if (written.policies) policies(*written.policies, written, rule.policies);
     if (written.trigger) {
-      if (auto typed = boolean(*written.trigger, "a trigger")) {
+      if (auto typed = typed_condition(*written.trigger, "a trigger", symbols_, diagnostics_)) {
         rule.trigger = compile(*typed);
         check_constant_trigger(written, rule.trigger, diagnostics_);
         collect_thresholds(*typed, rules_.inputs);
@@ -290,7 +219,8 @@ class Checker {
         continue;
       }
       names.add(name_hash(strategy.name.text), rules_.strategies.size());
-      add_strategy(strategy, id);
+      const bool has_trigger = !conditions_.empty() && conditions_.back().rule == id;
+      strategies_.add(strategy, id, has_trigger ? &conditions_.back() : nullptr);
     }
     sort_unique(rules_.rules[id.index].components);
     // How a component of a broken line is started is not known.
@@ -392,218 +322,6 @@ class Checker {
     }
   }
 
-  void check_numbers(const syntax::Strategy& written) {
-    const auto in_percent = [](const syntax::Number& n) { return n.value > 0 && n.value <= 100; };
-    if (!in_percent(written.probability)) {
-      report(Code::kProbabilityRange, written.probability.span,
-             "a success probability is above 0 and at most 100 percent",
-             written.probability.value == 0
-                 ? "a strategy that never helps need not be written down"
-                 : "write how often it helps, in percent, for example 80");
-    }
-    if (written.probability.value > 0 && written.probability.value < 1) {
-      diagnostics_.push_back({Code::kProbabilityRange, Severity::kWarning, written.probability.span,
-                              "this success probability is less than one percent",
-                              percent_remedy(written.probability),
-                              in_percent_fix(written.probability)});
-    }
-    if (!in_percent(written.confidence)) {
-      report(Code::kConfidenceRange, written.confidence.span,
-             "a confidence is above 0 and at most 100", "it counts as that many past attempts");
-    }
-  }
-
-  void add_strategy(const syntax::Strategy& written, RuleId rule) {
-    const StrategyId id(rules_.strategies.size());
-    const bool has_trigger = !conditions_.empty() && conditions_.back().rule == rule;
-    if (has_trigger) conditions_.back().strategies.push_back(&written);
-    Strategy strategy;
-    strategy.name = written.name.text;
-    strategy.rule = rule;
-    strategy.is_last_resort = written.is_last_resort;
-    if (written.is_last_resort) strategy.within = written.within.value_or(kWithin);
-    check_numbers(written);
-    strategy.success = percent(written.probability.value);
-    strategy.confidence = written.confidence.value;
-    if (written.when) {
-      if (auto typed = boolean(*written.when, "a WHEN condition")) {
-        strategy.when = compile(*typed);
-        if (has_trigger) conditions_.back().whens.push_back({id, std::move(*typed)});
-      }
-    }
-    if (written.adaptations.empty() && !written.has_broken_adaptation) {
-      report(Code::kIncomplete, written.name.span,
-             "strategy '" + written.name.text + "' has no ADAPTATION",
-             "say what it does: ADAPTATION component restart 5");
-    }
-    strategy.adaptations.reserve(written.adaptations.size());
-    strategy.components.reserve(written.adaptations.size());
-    for (const syntax::Adaptation& adaptation : written.adaptations) {
-      const auto first = strategy.adaptations.size();
-      adaptation.type == AdaptationType::kStartGroup ? add_group(adaptation, strategy)
-                                                     : add_adaptation(adaptation, strategy);
-      for (auto i = first; i < strategy.adaptations.size(); ++i)
-        strategy.adaptations[i].written =
-            static_cast<std::uint32_t>(&adaptation - written.adaptations.data());
-    }
-    const auto begins_step = steps_of(written);
-    for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
-      Adaptation& each = strategy.adaptations[i];
-      const bool is_next_of_group = i > 0 && strategy.adaptations[i - 1].written == each.written;
-      each.begins_step = is_next_of_group || begins_step[each.written];
-    }
-    strategy.impact = impact_of(strategy.adaptations);
-    if (!written.has_broken_adaptation) check_contradictions(written, diagnostics_);
-
-    sort_unique(strategy.components);
-    auto& touched = rules_.rules[rule.index].components;
-    touched.insert(touched.end(), strategy.components.begin(), strategy.components.end());
-    rules_.heaviest = std::max(rules_.heaviest, strategy.impact);
-    rules_.rules[rule.index].strategies.push_back(id);
-    rules_.strategies.push_back(std::move(strategy));
-  }
-
-  static Cycles impact_of(const std::vector<Adaptation>& adaptations) {
-    Cycles whole, step;
-    for (const Adaptation& each : adaptations) {
-      if (each.begins_step) {
-        whole.count += step.count;
-        step = {};
-      }
-      step = std::max(step, each.impact);
-    }
-    return {whole.count + step.count};
-  }
-
-  // Empty if a hundred times the fraction is no whole percentage either.
-  static std::string percent_remedy(const syntax::Number& fraction) {
-    const auto fix = in_percent_fix(fraction);
-    return "probabilities are in percent" + (fix ? ": write " + fix->text : "");
-  }
-
-  static std::optional<Edit> in_percent_fix(const syntax::Number& fraction) {
-    if (fraction.value < 0.01) return std::nullopt;
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", fraction.value * 100);
-    return Edit{fraction.span, text};
-  }
-
-  void add_adaptation(const syntax::Adaptation& written, Strategy& strategy) {
-    Adaptation adaptation;
-    adaptation.component = symbols_.component(written.component);
-    adaptation.type = written.type;
-    adaptation.subject = written.subject.text;
-    adaptation.topic = written.topic.text;
-    if (written.request) add_request(*written.request, adaptation);
-    if (syntax::names_parameter(written.type))
-      adaptation.parameter = symbols_.parameter(adaptation.component, adaptation.subject);
-    adaptation.impact = impact_of(written);
-    if (written.value) {
-      if (auto typed = type_expression(*written.value, symbols_, diagnostics_)) {
-        adaptation_value(written, std::move(*typed), adaptation);
-      }
-    }
-    strategy.components.push_back(adaptation.component);
-    strategy.adaptations.push_back(std::move(adaptation));
-  }
-
-  void add_request(const syntax::Name& written, Adaptation& adaptation) {
-    adaptation.request = written.text;
-    if (auto flaw = flaw_of_request(written.text))
-      report(Code::kBadRequest, written.span, std::move(flaw->cause), std::move(flaw->remedy));
-  }
-
-  // Zero: it was reported.
-  Cycles impact_of(const syntax::Adaptation& written) {
-    if (written.impact.whole && written.impact.value >= 1 && written.impact.value <= kMaxImpact)
-      return {static_cast<std::int64_t>(written.impact.value)};
-    report(Code::kImpactRange, written.impact.span,
-           written.impact.value > kMaxImpact ? "no impact has so many cycles"
-                                             : "an impact is a whole number of cycles, at least 1",
-           "count the cycles until the failure is cleared");
-    return {};
-  }
-
-  // start_group: each member in its order, as steps; then its manager, where somebody can start that.
-  // The last one has the impact.
-  void add_group(const syntax::Adaptation& written, Strategy& strategy) {
-    const Cycles impact = impact_of(written);
-    const auto id = symbols_.group(written.component);
-    if (!id || rules_[*id].members.empty()) return;
-    const Group& group = rules_[*id];
-    const auto add = [&](ComponentId component, AdaptationType type) {
-      Adaptation adaptation;
-      adaptation.component = component;
-      adaptation.type = type;
-      adaptation.group = *id;
-      strategy.components.push_back(component);
-      strategy.adaptations.push_back(std::move(adaptation));
-    };
-    for (const ComponentId member : group.members) add(member, AdaptationType::kActivate);
-    if (rules_[group.manager].can_start_again()) add(group.manager, AdaptationType::kRedeploy);
-    strategy.adaptations.back().impact = impact;
-  }
-
-  void adaptation_value(const syntax::Adaptation& written, Typed typed, Adaptation& adaptation) {
-    const bool changes = written.type != AdaptationType::kSetParameter;
-    const bool number = typed.type == Type::kInt || typed.type == Type::kDouble;
-    if (changes && !number) {
-      report(
-          Code::kTypeMismatch, written.value->span,
-          std::string(keyword(written.type)) + " needs a number; this is " + describe(typed.type),
-          "write by how much the value changes, or use set_parameter");
-    } else if (typed.type == Type::kDuration) {
-      report(Code::kTypeMismatch, written.value->span, "ROS parameters hold no durations",
-             "write the number that the node expects, for example its seconds");
-    } else if (fits_stack(typed, *written.value)) {
-      adaptation.value = compile(typed);
-      check_value(written, typed, adaptation.parameter);
-    }
-  }
-
-  // Warnings about a value that the node would refuse.
-  void check_value(const syntax::Adaptation& written, const Typed& typed, ParameterId parameter) {
-    const bool is_list = typed.op == Op::kConstant && typed.type == Type::kString &&
-                         typed.constant->text.starts_with('[');
-    const auto read = symbols_.type_of(parameter);
-    const bool fits =
-        !read || *read == typed.type || is_list || (is_numeric(*read) && is_numeric(typed.type));
-    if (!fits)
-      diagnostics_.push_back({Code::kTypeMismatch, Severity::kWarning, written.value->span,
-                              "the rules read parameter '" + written.subject.text + "' as " +
-                                  describe(*read) + ", and this is " + describe(typed.type),
-                              "write one type at both places: a node refuses another one"});
-    if (is_list && typed.constant->text.find(']') == std::string::npos)
-      diagnostics_.push_back({Code::kNoValue, Severity::kWarning, written.value->span,
-                              "this list is not closed, so it is sent as a text",
-                              "write ']' at its end, as in \"[1, 2]\""});
-  }
-
-  std::optional<Typed> boolean(const syntax::Expression& e, const std::string& what) {
-    auto typed = type_expression(e, symbols_, diagnostics_);
-    if (!typed || !fits_stack(*typed, e)) return std::nullopt;
-    if (typed->type == Type::kBool) return typed;
-    report(Code::kTypeMismatch, e.span,
-           what + " is true or false; this is " + describe(typed->type),
-           remedy_of_no_condition(*typed, e));
-    return std::nullopt;
-  }
-
-  static std::string remedy_of_no_condition(const Typed& typed, const syntax::Expression& e) {
-    if (typed.type == Type::kDuration) return "compare it with a duration, as in age(/topic) > 1s";
-    if (typed.type != Type::kString) return "compare it with something, as in rate(/topic) < 1";
-    return e.kind == syntax::Expression::Kind::kLiteral
-               ? "write the condition without quotes"
-               : "compare it with a text, as in lifecycle(camera) != \"active\"";
-  }
-
-  bool fits_stack(const Typed& typed, const syntax::Expression& e) {
-    if (stack_need(typed) <= kStackSize) return true;
-    report(Code::kTooDeep, e.span, "this expression is nested too deeply",
-           "split it into several rules");
-    return false;
-  }
-
   void link_readers(RuleId id) {
     Rule& rule = rules_.rules[id.index];
     rule.inputs.reserve(static_cast<std::size_t>(
@@ -648,12 +366,6 @@ class Checker {
     }
   }
 
-  template <class T>
-  static void sort_unique(std::vector<T>& items) {
-    std::sort(items.begin(), items.end());
-    items.erase(std::unique(items.begin(), items.end()), items.end());
-  }
-
   void report(Code code, Span span, std::string cause, std::string remedy) {
     diagnostics_.push_back({code, Severity::kError, span, std::move(cause), std::move(remedy)});
   }
@@ -662,6 +374,7 @@ class Checker {
   std::vector<Diagnostic>& diagnostics_;
   RuleSet rules_;
   Symbols symbols_;
+  StrategyEntries strategies_;
   bool has_broken_declaration_ = false;
   PlaceIndex rule_names_;
   std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
