@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cstdint>
 #include <string>
 #include <utility>
 
 #include "base/closest.h"
+#include "language/foreign_operators.h"
+#include "language/foreign_units.h"
 #include "language/foreign_words.h"
 #include "language/functions.h"
 #include "language/line_reader.h"
@@ -85,9 +86,9 @@ class ExpressionParser {
       if (++length + depth > kMaxNesting) return too_long();
       const Token op = scanner_.next();
       if (const Token& second = scanner_.peek(); op.span.end == second.span.begin) {
-        if (auto slip = doubled(op, second)) return fail(std::move(*slip));
+        if (auto slip = doubled_operator(op, second)) return fail(std::move(*slip));
       }
-      if (auto slip = per_second(*left, op, scanner_.peek())) return fail(std::move(*slip));
+      if (auto slip = per_second(*left, op, scanner_)) return fail(std::move(*slip));
       if (op.is("%") && !begins_value(scanner_.peek()))
         return fail(
             Code::kSyntax, op.span, "unexpected '%' after a number",
@@ -102,7 +103,7 @@ class ExpressionParser {
       adopt(e, std::move(*left), std::move(*right));
       left = std::move(e);
     }
-    if (auto slip = foreign_operator(*left)) return fail(std::move(*slip));
+    if (auto slip = foreign_operator(*left, scanner_)) return fail(std::move(*slip));
     return left;
   }
 
@@ -112,234 +113,9 @@ class ExpressionParser {
             token.is("!"));
   }
 
-  static Diagnostic wrong_operator(Span span, const std::string& written,
-                                   const std::string& meant) {
-    return {Code::kSyntax,    Severity::kError, span, "'" + written + "' is no operator",
-            "write " + meant, Edit{span, meant}};
-  }
-
-  // "<>", ">>", "===", "**": two symbols that other languages write as one.
-  static std::optional<Diagnostic> doubled(const Token& first, const Token& second) {
-    struct Slip {
-      std::string_view first, second, meant;
-    };
-    constexpr std::array<Slip, 7> kSlips = {{{"<", ">", "!="},
-                                             {">", ">", ">"},
-                                             {"<", "<", "<"},
-                                             {"==", "=", "=="},
-                                             {"!=", "=", "!="},
-                                             {">=", "=", ">="},
-                                             {"<=", "=", "<="}}};
-    for (const Slip& slip : kSlips) {
-      if (first.is(slip.first) && second.is(slip.second))
-        return wrong_operator({first.span.begin, second.span.end},
-                              std::string(slip.first).append(slip.second), std::string(slip.meant));
-    }
-    if (first.is("/") && second.is("*"))
-      return Diagnostic{Code::kExtraText,
-                        Severity::kError,
-                        {first.span.begin, second.span.end},
-                        "no comment begins with '/*'",
-                        "begin a comment with #",
-                        Edit{{first.span.begin, second.span.end}, "#"}};
-    if (!first.is("*") || !second.is("*")) return std::nullopt;
-    return Diagnostic{Code::kSyntax,
-                      Severity::kError,
-                      {first.span.begin, second.span.end},
-                      "'**' is no operator",
-                      "write pow(base, exponent)"};
-  }
-
-  // "8/s"
-  std::optional<Diagnostic> per_second(const Expression& left, const Token& op,
-                                       const Token& second) const {
-    const bool is_so = left.kind == Kind::kLiteral && op.is("/") &&
-                       op.span.begin == left.span.end && second.span.begin == op.span.end &&
-                       (second.text == "s" || second.text == "sec" || second.text == "second");
-    if (!is_so) return std::nullopt;
-    const Span span{left.span.begin, second.span.end};
-    const std::string number(text_of(left.span));
-    return Diagnostic{
-        Code::kTypeMismatch, Severity::kError,  span, "rates are in Hz and have no unit",
-        "write " + number,   Edit{span, number}};
-  }
-
   std::nullopt_t unfinished(const Token& op) {
     return fail(Code::kSyntax, op.span, "a value is missing behind '" + std::string(op.text) + "'",
                 "write the other side; a statement is one line");
-  }
-
-  // "alive camera": a function as other languages call it. "age /scan" is a division (typing.cpp).
-  std::optional<Diagnostic> call_without_parentheses(const Expression& name) {
-    const bool is_function = name.kind == Kind::kName && find_function(name.name.text) != nullptr;
-    Scanner ahead = scanner_.ahead();
-    const Token& next = ahead.peek();
-    const bool is_apart = next.span.begin > name.span.end;
-    const bool is_word = next.kind == Token::Kind::kIdentifier || next.kind == Token::Kind::kString;
-    if (!is_function || !is_apart || !is_word) return std::nullopt;
-    const syntax::Name argument = ahead.next_name();
-    const std::string upper = upper_case(argument.text);
-    const auto words = reserved_words();
-    const bool is_operator = !operator_of_word(argument.text).empty() || upper == "BETWEEN" ||
-                             std::ranges::find(words, upper) != words.end();
-    // A parameter of a template may be the number behind an expression that ends in this name.
-    const bool is_parameter = argument.text.starts_with('{');
-    if (argument.text.empty() || is_operator || is_parameter) return std::nullopt;
-    const Span span{name.span.begin, argument.span.end};
-    const std::string meant = name.name.text + "(" + argument.text + ")";
-    return Diagnostic{Code::kSyntax,
-                      Severity::kError,
-                      span,
-                      "the argument of a function stands in parentheses",
-                      "write " + meant,
-                      Edit{span, meant}};
-  }
-
-  // A word for the state of a component: "camera is dead".
-  static std::optional<bool> is_word_for_alive(std::string_view word) {
-    constexpr std::array<std::string_view, 4> kAlive = {"alive", "up", "running", "online"};
-    constexpr std::array<std::string_view, 8> kDown = {"dead",   "down",    "gone",    "offline",
-                                                       "exited", "crashed", "missing", "stopped"};
-    if (std::ranges::find(kAlive, word) != kAlive.end()) return true;
-    if (std::ranges::find(kDown, word) != kDown.end()) return false;
-    return std::nullopt;
-  }
-
-  std::optional<Diagnostic> state_in_words(const Expression& left, const Token& verb) {
-    Scanner ahead = scanner_.ahead();
-    ahead.next();
-    const Token& second = ahead.peek();
-    const auto is_alive = is_word_for_alive(second.text);
-    if (left.kind != Kind::kName || !is_alive) return std::nullopt;
-    const Span span{left.span.begin, second.span.end};
-    const std::string meant = (*is_alive ? "alive(" : "!alive(") + left.name.text + ")";
-    return Diagnostic{
-        Code::kSyntax,
-        Severity::kError,
-        span,
-        "'" + std::string(verb.text) + " " + std::string(second.text) + "' is no comparison",
-        "write " + meant,
-        Edit{span, meant}};
-  }
-
-  // "battery is None"
-  std::optional<Diagnostic> nothing_in_words(const Token& verb) const {
-    Scanner ahead = scanner_.ahead();
-    ahead.next();
-    const Token& second = ahead.peek();
-    const std::string upper = upper_case(second.text);
-    if (upper != "NONE" && upper != "NULL" && upper != "NIL") return std::nullopt;
-    const Span span{verb.span.begin, second.span.end};
-    return Diagnostic{Code::kSyntax, Severity::kError, span,
-                      "'" + std::string(text_of(span)) + "' is no comparison",
-                      "age(/topic) > 1s detects that no value comes"};
-  }
-
-  // An operator of another language behind the value `left`.
-  std::optional<Diagnostic> foreign_operator(const Expression& left) {
-    const Token& token = scanner_.peek();
-    if (token.is("=")) {
-      Scanner ahead = scanner_.ahead();
-      ahead.next();
-      const Token& second = ahead.peek();
-      const bool adjoins = second.span.begin == token.span.end;
-      if (adjoins && (second.is(">") || second.is("<")))
-        return wrong_operator({token.span.begin, second.span.end}, "=" + std::string(second.text),
-                              std::string(second.text) + "=");
-      if (adjoins && text_of(second.span) == "~")
-        return Diagnostic{Code::kSyntax,
-                          Severity::kError,
-                          {token.span.begin, second.span.end},
-                          "'=~' is no operator",
-                          "compare with each: x == \"a\" || x == \"b\""};
-      auto slip = wrong_operator(token.span, "=", "==");
-      slip.remedy += " to compare";
-      return slip;
-    }
-    if (token.is("!")) {
-      Scanner ahead = scanner_.ahead();
-      ahead.next();
-      const Token& second = ahead.peek();
-      const bool is_so = second.span.begin == token.span.end && (second.is(">") || second.is("<"));
-      if (is_so)
-        return wrong_operator({token.span.begin, second.span.end}, "!" + std::string(second.text),
-                              second.is(">") ? "<=" : ">=");
-    }
-    if (token.kind != Token::Kind::kIdentifier) return std::nullopt;
-    return operator_in_words(left, token);
-  }
-
-  // The operator that a word stands for; empty: it is none.
-  static std::string_view operator_of_word(std::string_view word) {
-    constexpr auto kWords = std::to_array<std::pair<std::string_view, std::string_view>>(
-        {{"and", "&&"},    {"or", "||"},     {"is", "=="},     {"equals", "=="}, {"equal", "=="},
-         {"eq", "=="},     {"gt", ">"},      {"lt", "<"},      {"ge", ">="},     {"gte", ">="},
-         {"le", "<="},     {"lte", "<="},    {"ne", "!="},     {"above", ">"},   {"over", ">"},
-         {"exceeds", ">"}, {"greater", ">"}, {"more", ">"},    {"larger", ">"},  {"below", "<"},
-         {"under", "<"},   {"less", "<"},    {"smaller", "<"}, {"lower", "<"},   {"higher", ">"}});
-    std::string lower(word);
-    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
-    for (const auto& [theirs, ours] : kWords) {
-      if (theirs == lower) return ours;
-    }
-    return "";
-  }
-
-  // "in ("a", "b")", "not in ["a"]"
-  std::optional<Diagnostic> membership(const Token& first) {
-    Scanner behind = scanner_.ahead();
-    behind.next();
-    Span span = first.span;
-    const bool is_negated =
-        upper_case(first.text) == "NOT" && upper_case(behind.peek().text) == "IN";
-    if (is_negated) span.end = behind.next().span.end;
-    if (!is_negated && upper_case(first.text) != "IN") return std::nullopt;
-    const Token open = behind.next();
-    const bool is_list = open.is("(") || text_of(open.span) == "[";
-    if (!is_list || (!is_negated && behind.peek().kind != Token::Kind::kString))
-      return std::nullopt;
-    return Diagnostic{Code::kSyntax, Severity::kError, span,
-                      "'" + std::string(text_of(span)) + "' is no operator",
-                      is_negated ? "compare with each: x != \"a\" && x != \"b\""
-                                 : "compare with each: x == \"a\" || x == \"b\""};
-  }
-
-  std::optional<Diagnostic> operator_in_words(const Expression& left, const Token& first) {
-    if (auto slip = membership(first)) return slip;
-    if (upper_case(first.text) == "BETWEEN" || upper_case(first.text) == "IN")
-      return Diagnostic{Code::kSyntax, Severity::kError, first.span,
-                        "'" + std::string(first.text) + "' is no operator",
-                        "to test a range, write low <= x && x <= high"};
-    std::string meant(operator_of_word(first.text));
-    if (meant.empty()) return std::nullopt;
-    if (meant == "==") {
-      if (auto slip = state_in_words(left, first)) return slip;
-      if (auto slip = nothing_in_words(first)) return slip;
-    }
-    Scanner ahead = scanner_.ahead();
-    ahead.next();
-    Span span = first.span;
-    // "is not", "is greater than", "less than or equal to"
-    for (Token next = ahead.next(); next.kind == Token::Kind::kIdentifier; next = ahead.next()) {
-      const std::string word = upper_case(next.text);
-      const std::string_view other = operator_of_word(next.text);
-      const bool is_filler = word == "THAN" || word == "TO" || word == "THE";
-      const bool joins = other == "&&" || (other == "||" && meant.size() == 2);
-      if (word == "NOT" && meant == "==") {
-        meant = "!=";
-      } else if (joins || (!is_filler && other.empty())) {
-        break;
-      } else if (other == "==" && meant.size() == 1) {
-        meant += "=";
-      } else if (!other.empty() && other != "||") {
-        meant = other;
-      }
-      span.end = next.span.end;
-    }
-    const std::string written(text_of(span));
-    auto slip = wrong_operator(span, written, meant);
-    slip.remedy += " for '" + written + "'";
-    return slip;
   }
 
   std::optional<Expression> unary(int depth) {
@@ -364,7 +140,7 @@ class ExpressionParser {
     switch (token.kind) {
       case Token::Kind::kNumber:
         if (const auto unit = scanner_.next_letters(); !unit.empty()) {
-          const auto blank = unit_behind_blank(token, unit);
+          const auto blank = unit_behind_blank(token, unit, scanner_);
           if (blank) return fail(blank->code, blank->span, blank->cause, blank->remedy, blank->fix);
         }
         e.literal = token.value();
@@ -402,7 +178,7 @@ class ExpressionParser {
                       "write the condition or the value in its place");
         e.kind = Kind::kName;
         e.name = {std::string(token.text), token.span};
-        if (auto slip = call_without_parentheses(e)) return fail(std::move(*slip));
+        if (auto slip = call_without_parentheses(e, scanner_)) return fail(std::move(*slip));
         return scanner_.peek().is("(") ? call(std::move(e), depth) : std::optional(std::move(e));
       case Token::Kind::kSymbol:
         if (token.is("(")) return parenthesis(token, depth);
@@ -419,40 +195,6 @@ class ExpressionParser {
   // A placeholder that people leave for later.
   static bool is_reminder(std::string_view word) {
     return word == "TODO" || word == "FIXME" || word == "TBD" || word == "XXX";
-  }
-
-  // "500 ms", "5 Hz"
-  std::optional<Diagnostic> unit_behind_blank(const Token& number, std::string_view unit) {
-    const auto end = scanner_.position() + static_cast<std::uint32_t>(unit.size());
-    if (is_hertz(unit))
-      return Diagnostic{Code::kSyntax,
-                        Severity::kError,
-                        {number.span.begin, end},
-                        "rates are in Hz and have no unit",
-                        "leave the unit out",
-                        Edit{{number.span.end, end}, ""}};
-    const std::string written(text_of(number.span));
-    if (const auto remedy = remedy_of_memory(written, unit))
-      return Diagnostic{Code::kSyntax,
-                        Severity::kError,
-                        {number.span.begin, end},
-                        "memory is in MiB and has no unit",
-                        "write " + *remedy,
-                        Edit{{number.span.begin, end}, *remedy}};
-    if (unit == "m")
-      return Diagnostic{Code::kSyntax,
-                        Severity::kError,
-                        {number.span.begin, end},
-                        "a duration has no blank in it",
-                        "write " + written + "min for minutes, or " + written + "ms"};
-    const std::string meant(duration_unit(unit));
-    if (meant.empty()) return std::nullopt;
-    return Diagnostic{Code::kSyntax,
-                      Severity::kError,
-                      {number.span.begin, end},
-                      "a duration has no blank in it",
-                      "write " + written + meant,
-                      Edit{{number.span.end, end}, meant}};
   }
 
   std::nullopt_t value_is_missing(const Token& token) {
@@ -623,24 +365,9 @@ class ExpressionParser {
   std::nullopt_t bad(const Token& token) {
     auto [cause, fix, remedy] = complaint_about(token);
     if (remedy.empty() && token.flaw == Token::Flaw::kNumber) {
-      remedy = "a unit is one of ns, us, ms, s, min and h, as in 500ms";
-      const auto number =
-          std::get<std::string_view>(token.literal).substr(0, token.span.end - token.span.begin);
-      const auto end = number.find_first_not_of(".0123456789");
-      if (end != std::string_view::npos && is_physical_unit(number.substr(end))) {
-        remedy = "only durations have a unit: write " + std::string(number.substr(0, end));
-        fix = Edit{token.span, std::string(number.substr(0, end))};
-      }
-      if (end != std::string_view::npos && is_hertz(number.substr(end))) {
-        remedy = "rates are in Hz and have no unit: write " + std::string(number.substr(0, end));
-        fix = Edit{token.span, std::string(number.substr(0, end))};
-      }
-      if (end != std::string_view::npos) {
-        if (const auto meant = remedy_of_memory(number.substr(0, end), number.substr(end))) {
-          remedy = "memory is in MiB and has no unit: write " + *meant;
-          fix = Edit{token.span, *meant};
-        }
-      }
+      UnitSlip slip = slip_of_unit(token);
+      remedy = std::move(slip.remedy);
+      if (slip.fix) fix = std::move(slip.fix);
     }
     const std::string_view written = text_of(token.span);
     if (const std::string name = name_in_braces(token); !name.empty()) {
@@ -652,33 +379,12 @@ class ExpressionParser {
     return fail(Code::kBadToken, token.span, cause, remedy, fix);
   }
 
-  static bool is_physical_unit(std::string_view unit) {
-    constexpr auto kUnits = std::to_array<std::string_view>(
-        {"C",  "F",  "f",   "K",   "V",   "mV", "A",  "mA", "W",  "m",  "cm",
-         "mm", "km", "deg", "rad", "rpm", "N",  "Nm", "kg", "dB", "dBm"});
-    return std::ranges::find(kUnits, unit) != kUnits.end();
-  }
-
   // "{limit}"; empty: no such name begins there.
   std::string name_in_braces(const Token& brace) const {
     constexpr std::uint32_t kMost = 255;
     const std::string_view text = text_of({brace.span.begin, brace.span.begin + kMost});
     const std::size_t length = hole_length(text);
     return length > 2 ? std::string(text.substr(1, length - 2)) : "";
-  }
-
-  // The number in MiB; nothing: `unit` is none of memory.
-  static std::optional<std::string> remedy_of_memory(std::string_view number,
-                                                     std::string_view unit) {
-    const std::string upper = upper_case(unit);
-    const bool is_mebi = upper == "MB" || upper == "MIB" || unit == "M";
-    const bool is_gibi = upper == "GB" || upper == "GIB" || unit == "G";
-    if (is_mebi) return std::string(number);
-    double gibi = 0;
-    const char* end = number.data() + number.size();
-    if (!is_gibi || std::from_chars(number.data(), end, gibi).ec != std::errc())
-      return std::nullopt;
-    return std::to_string(static_cast<std::int64_t>(gibi * 1024));
   }
 
   std::string_view text_of(Span span) const { return scanner_.text(span); }
