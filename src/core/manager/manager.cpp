@@ -1,31 +1,20 @@
 #include "manager/manager.h"
 
 #include <algorithm>
-#include <functional>
+#include <utility>
 
-#include "analyze/backoff.h"
 #include "base/invariant.h"
 #include "diagnose/questions.h"
-#include "knowledge/held.h"
-#include "knowledge/undoes.h"
+#include "manager/learned.h"
 #include "plan/allowed.h"
 #include "plan/also_ended.h"
 #include "plan/awaits_valid_strategy.h"
 #include "plan/beside_exhausted.h"
 #include "plan/explained_by.h"
 #include "plan/giving_back.h"
-#include "plan/validity.h"
 
 namespace culprit {
 namespace {
-
-bool same_reasons(const std::vector<Candidate>& a, const std::vector<Candidate>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const Candidate& x, const Candidate& y) {
-                      return x.strategy == y.strategy && x.excluded == y.excluded &&
-                             x.component == y.component && x.failure == y.failure;
-                    });
-}
 
 // Did a person end one of them?
 bool stays_any_down(std::span<const ComponentId> components, const Knowledge& knowledge) {
@@ -173,7 +162,8 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
     if (tells_of_silence(observation)) analyzer_.forgive_unheard(now_);
     if (const auto* reply = std::get_if<Reply>(&observation.what)) answered(*reply, now_);
     if (const auto* order = std::get_if<Order>(&observation.what)) obey(*order, now_);
-    if (const auto* told = std::get_if<PriorsTold>(&observation.what)) adopt(*told, now_);
+    if (const auto* told = std::get_if<PriorsTold>(&observation.what))
+      adopt_priors(*told, now_, knowledge_);
     const bool is_new = is_news(observation);
     news_ |= is_new;
     is_incident_due_ |= is_new;
@@ -247,47 +237,12 @@ void Manager::obey(const Order& order, Time now) {
     if (knowledge_.rules[*begun].is_last_resort) go_before_others(*begun, now);
     begin(*begun, now);
   } else if (const auto* forgotten = std::get_if<Forget>(&order.what)) {
-    forget(forgotten->rule);
+    forget_learned(forgotten->rule, knowledge_);
   } else if (std::holds_alternative<Revive>(order.what)) {
     knowledge_.departures.revive();
   } else if (std::holds_alternative<EndStarted>(order.what)) {
     knowledge_.departures.end_started();
   }
-}
-
-void Manager::forget(std::optional<RuleId> rule) {
-  const RuleSet& rules = knowledge_.rules;
-  for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
-    if (!rule || rules.strategies[s].rule == *rule) knowledge_.beliefs.forget(StrategyId(s));
-  }
-  std::erase_if(knowledge_.outcomes.open, [&](const PendingOutcome& outcome) {
-    return !rule || rules[outcome.strategy].rule == *rule;
-  });
-  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
-    const RuleId effect(r);
-    for (const Couplings::Learned& each : knowledge_.couplings.of(effect)) {
-      if (!rule || each.cause == *rule || effect == *rule)
-        knowledge_.couplings.set(each.cause, effect, {});
-    }
-    if (rule && effect != *rule) continue;
-    knowledge_.latencies.forget(effect);
-    knowledge_.transients.forget(effect);
-    knowledge_.coincidences.forget(effect);
-  }
-}
-
-// Invalid counts are left out: they come from a network.
-void Manager::adopt(const PriorsTold& told, Time now) {
-  PriorsAdopted adopted{{}, told.source};
-  constexpr double kMost = 1e9;
-  const auto is_count = [](double count) { return count > 0 && count < kMost; };
-  for (const PriorsTold::Prior& each : told.priors) {
-    if (each.strategy.index >= knowledge_.rules.strategies.size()) continue;
-    if (!is_count(each.alpha) || !is_count(each.beta)) continue;
-    if (knowledge_.beliefs.begin_from(each.strategy, {each.alpha, each.beta}))
-      adopted.priors.push_back(each);
-  }
-  if (!adopted.priors.empty()) knowledge_.events.tell(now, std::move(adopted));
 }
 
 void Manager::abandon_all(const std::string& reason, Time now) {
@@ -360,20 +315,21 @@ void Manager::plan(Time now, std::vector<Command>& commands) {
                                governor_.withholds(*decision.chosen, now) ||
                                is_beside_last_resort(*decision.chosen);
       if (!has_to_wait) carry_out(decision, now);
-    } else if (decision.is_spent && !plan::awaits_valid_strategy(decision, knowledge_)) {
-      hold_back(decision, now);
+      continue;
+    }
+    held_back_.held_back(decision, knowledge_.states[decision.rule].failing_since, now,
+                         knowledge_.events);
+    if (decision.is_spent && !plan::awaits_valid_strategy(decision, knowledge_)) {
       // While an unreachable computer explains the failure, attempts in vain are repeated once it is
       // reachable again.
       if (knowledge_.unheard_behind(decision.rule))
         analyzer_.last_resorts().turn_to(decision.rule, now);
       else if (!stays_any_down(knowledge_.rules[decision.rule].components, knowledge_))
         analyzer_.round_is_spent(decision.rule, now);
-    } else {
-      hold_back(decision, now);
-      if (is_given_up(decision, knowledge_))
-        analyzer_.give_up(decision.rule, now);
-      else if (plan::waits_for_person(decision, knowledge_))
-        analyzer_.last_resorts().turn_to(decision.rule, now);
+    } else if (is_given_up(decision, knowledge_)) {
+      analyzer_.give_up(decision.rule, now);
+    } else if (plan::waits_for_person(decision, knowledge_)) {
+      analyzer_.last_resorts().turn_to(decision.rule, now);
     }
   }
   give_back(now);
@@ -409,148 +365,6 @@ void Manager::ask(const Decision& decision, Time now, std::vector<Command>& comm
     executor_.ask(component, decision.candidates.front().strategy, diagnose::kAnswersWithin, now,
                   commands);
   }
-}
-
-// ---- last resorts
-
-namespace {
-
-bool touch_one_thing(const Strategy& last_resort, const Strategy& other) {
-  const auto& adapted = other.components;
-  return std::ranges::any_of(last_resort.adaptations, [&](const Adaptation& a) {
-    const bool is_shared = std::binary_search(adapted.begin(), adapted.end(), a.component);
-    const bool only_sets = syntax::names_parameter(a.type) || a.type == AdaptationType::kCall ||
-                           a.type == AdaptationType::kChangeMode;
-    return is_shared && !only_sets;
-  });
-}
-
-bool would_change(const Strategy& other, const Strategy& last_resort, const Knowledge& knowledge) {
-  return std::ranges::any_of(other.adaptations, [&](const Adaptation& change) {
-    return std::ranges::any_of(last_resort.adaptations, [&](const Adaptation& held) {
-      return changes(change, held, knowledge);
-    });
-  });
-}
-
-}  // namespace
-
-void Manager::begin_last_resorts(Time now) {
-  std::vector<RuleId> rules;
-  for (const auto* list : {&knowledge_.states.active(), &knowledge_.states.exhausted()}) {
-    std::ranges::copy_if(*list, std::back_inserter(rules),
-                         [&](RuleId id) { return analyzer_.last_resorts().next(id).has_value(); });
-  }
-  // The most critical one comes first: it holds what the others then leave alone.
-  std::ranges::stable_sort(rules, std::greater{},
-                           [&](RuleId id) { return knowledge_.rules[id].policies.criticality; });
-  for (const RuleId id : rules) {
-    const StrategyId next = *analyzer_.last_resorts().next(id);
-    const RuleState& state = knowledge_.states[id];
-    const Time limit = later(state.failing_since, knowledge_.rules[next].within);
-    const bool goes_away = state.detection.trigger.known && !state.detection.trigger.b;
-    if (!goes_away && (now >= limit || !is_help_possible(id, limit, now)))
-      analyzer_.last_resorts().turn_to(id, now);
-    if (analyzer_.last_resorts().has_to_give_way(id, now)) {
-      knowledge_.events.tell(
-          now, StrategyAbandoned{state.last_resort->strategy, "the next last resort is due"});
-      analyzer_.last_resorts().give_way(id, now);
-    }
-    for (const StrategyId due : analyzer_.last_resorts().due(id, now)) {
-      if (begin_last_resort(due, now)) break;
-    }
-  }
-}
-
-// A person's pause holds it, and a robot that cannot do it: then it is tried again in each cycle.
-bool Manager::begin_last_resort(StrategyId strategy, Time now) {
-  const RuleId rule = knowledge_.rules[strategy].rule;
-  const bool is_dry = autonomy_ == Autonomy::kAdvise;
-  if (is_dry && knowledge_.states[rule].is_last_resort_advised) return true;
-  refresh_conditions(strategy, now);
-  plan::LastResortParts parts = plan::parts_of_last_resort(knowledge_.rules[strategy], knowledge_);
-  std::optional<std::string> obstacle;
-  if (!parts.obstacle.empty()) obstacle = std::move(parts.obstacle);
-  if (governor_.holds_last_resort_back(strategy, std::move(obstacle), now)) {
-    next_plan_ = std::min(next_plan_, later(now, knowledge_.rules.cycle));
-    return false;
-  }
-  if (!is_dry) go_before_others(strategy, now);
-  Candidate itself;
-  itself.strategy = strategy;
-  knowledge_.events.tell(now,
-                         StrategyChosen{strategy,
-                                        {itself},
-                                        {},
-                                        is_dry,
-                                        {},
-                                        plan::also_ended(knowledge_.rules[strategy], knowledge_)});
-  if (is_dry) {
-    knowledge_.states.advise_last_resort(rule);
-  } else {
-    begin(strategy, now, std::move(parts.obstacles));
-  }
-  return true;
-}
-
-// Abandons the strategies that would change the same thing, less critical last resorts among them; all
-// others go on beside it.
-void Manager::go_before_others(StrategyId strategy, Time now) {
-  const Strategy& last_resort = knowledge_.rules[strategy];
-  const std::vector<RuleId> active = knowledge_.states.active();
-  for (const RuleId id : active) {
-    const auto& attempt = knowledge_.states[id].attempt;
-    if (!attempt) continue;
-    // Since it was done first, its own rule respects it (holder_against), and would begin the same again.
-    if (knowledge_.states[id].stands(strategy)) continue;
-    const Strategy& other = knowledge_.rules[attempt->strategy];
-    if (!undoes(last_resort, other) && !touch_one_thing(last_resort, other)) continue;
-    knowledge_.events.tell(
-        now, StrategyAbandoned{attempt->strategy,
-                               "the last resort " + last_resort.name + " goes first"});
-    analyzer_.yield_to_last_resort(id, now);
-  }
-  const Criticality level = knowledge_.rules[last_resort.rule].policies.criticality;
-  for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
-    const auto& attempt = knowledge_.states[RuleId(r)].last_resort;
-    if (!attempt || knowledge_.rules.rules[r].policies.criticality >= level) continue;
-    if (!would_change(knowledge_.rules[attempt->strategy], last_resort, knowledge_)) continue;
-    knowledge_.events.tell(
-        now, StrategyAbandoned{attempt->strategy,
-                               "the last resort " + last_resort.name + " goes first"});
-    analyzer_.last_resorts().give_way(RuleId(r), now);
-  }
-}
-
-bool Manager::is_beside_last_resort(StrategyId strategy) const {
-  return std::ranges::any_of(knowledge_.rules[strategy].components, [&](ComponentId component) {
-    const Attempt* holder = knowledge_.states.reservation(component);
-    return holder != nullptr && knowledge_.rules[holder->strategy].is_last_resort;
-  });
-}
-
-// Can another strategy of the rule have helped by then? By its impact: it may help at once.
-bool Manager::is_help_possible(RuleId rule, Time limit, Time now) const {
-  const RuleState& state = knowledge_.states[rule];
-  const auto is_in_time = [&](StrategyId strategy, Time begun) {
-    const Duration impact = duration_of(knowledge_.rules[strategy].impact, knowledge_.rules);
-    return later(begun, impact) <= limit;
-  };
-  if (state.phase == RulePhase::kExhausted) return false;
-  if (state.attempt && state.attempt->stage == Attempt::Stage::kAdapting)
-    return is_in_time(state.attempt->strategy, now);
-  if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting)
-    return is_in_time(state.attempt->strategy, state.attempt->effective);
-  Time from = std::max(now, state.search.retry_at);
-  if (const auto held = governor_.restraint_on_all(now)) from = std::max(from, held->until);
-  const auto& strategies = knowledge_.rules[rule].strategies;
-  return std::ranges::any_of(strategies, [&](StrategyId strategy) {
-    const Knowledge::Withheld& withheld = knowledge_.withheld[strategy.index];
-    Time begun = withheld.reason.empty() ? from : std::max(from, withheld.until);
-    if (knowledge_.states.is_tried(strategy))
-      begun = later(begun, pause_after(state.search.round + 1));
-    return is_in_time(strategy, begun) && !plan::invalidity(knowledge_.rules[strategy], knowledge_);
-  });
 }
 
 // Reads the conditions of the strategy anew: its WHEN and the interlocks.
@@ -589,7 +403,7 @@ Time Manager::next_planning(Time now) const {
 
 void Manager::carry_out(const Decision& decision, Time now) {
   const StrategyId strategy = *decision.chosen;
-  held_back_[decision.rule.index] = {};
+  held_back_.went_on(decision.rule);
   const bool is_dry = autonomy_ == Autonomy::kAdvise;
   if (!is_dry && governor_.awaits_approval({strategy, decision.candidates, decision.suspects}, now))
     return;
@@ -610,21 +424,6 @@ void Manager::begin(StrategyId strategy, Time now, std::vector<std::string> obst
     monitor_.refresh(adaptation.value, now);
   executor_.begin(strategy, now, std::move(obstacles));
   governor_.began(strategy, now);
-}
-
-void Manager::hold_back(const Decision& decision, Time now) {
-  // Two reasons may hold by turns.
-  constexpr Duration kSaidAgain = std::chrono::seconds(5);
-  auto& [failing_since, said] = held_back_[decision.rule.index];
-  const Time since = knowledge_.states[decision.rule].failing_since;
-  if (std::exchange(failing_since, since) != since) said.clear();
-  while (said.size() > 1 && later(said.front().at, kSaidAgain) <= now) said.erase(said.begin());
-  const bool was_said = std::ranges::any_of(
-      said, [&](const Said& each) { return same_reasons(each.candidates, decision.candidates); });
-  if (was_said) return;
-  said.push_back({now, decision.candidates});
-  knowledge_.events.tell(now,
-                         FailureHeldBack{decision.rule, decision.candidates, decision.suspects});
 }
 
 Incidents::Course Manager::course_of(const Incident& incident) const {

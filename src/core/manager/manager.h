@@ -24,6 +24,7 @@
 #include "execute/strategy_executor.h"
 #include "incidents/incidents.h"
 #include "knowledge/knowledge.h"
+#include "manager/held_back_reports.h"
 #include "manager/managing_system.h"
 #include "monitor/monitor.h"
 #include "plan/planner.h"
@@ -104,9 +105,7 @@ class Manager : public ManagingSystem {
   void restart(Time since, Time now);
   void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);
-  void adopt(const PriorsTold& told, Time now);
   void refresh_conditions(StrategyId strategy, Time now);
-  void forget(std::optional<RuleId> rule);
   void abandon_what_stays_down(Time now);
   void abandon_all(const std::string& reason, Time now);
   void make_way_for(StrategyId strategy, Time now);
@@ -123,7 +122,6 @@ class Manager : public ManagingSystem {
   // Those parts of a last resort that have an obstacle are left out.
   void begin(StrategyId strategy, Time now, std::vector<std::string> obstacles = {});
   void carry_out(const Decision& decision, Time now);
-  void hold_back(const Decision& decision, Time now);
   void follow_incidents();
   Time next_planning(Time now) const;
 
@@ -143,16 +141,7 @@ class Manager : public ManagingSystem {
   bool is_incident_due_ = false;  // something that incidents are made of may have changed
   bool news_ = false;             // something a plan depends on changed since the last plan
   Time next_plan_ = kNever;       // while failures are held back
-  // Why a failure was held back, as it was reported.
-  struct Said {
-    Time at{};
-    std::vector<Candidate> candidates;
-  };
-  struct HeldBack {
-    Time failing_since = kNever;
-    std::vector<Said> said;  // within the last kSaidAgain, and the last one
-  };
-  std::vector<HeldBack> held_back_;  // by rule
+  HeldBackReports held_back_;
 };
 
 }  // namespace culprit
