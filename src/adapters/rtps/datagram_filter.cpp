@@ -8,11 +8,11 @@
 #include "base/invariant.h"
 #include "rtps/announcement.h"
 #include "rtps/submessage.h"
+#include "rtps/submessage_reader.h"
 
 namespace culprit::ros2 {
 namespace {
 
-constexpr std::uint16_t kSentinel = 1;  // of a list of parameters
 constexpr std::size_t kMostFragments = 1 << 16;
 
 // The size of a gap without a bitmap, with its header.
@@ -66,118 +66,6 @@ void pad(std::span<std::uint8_t> place) {
 
 }  // namespace
 
-// One submessage: a cursor over its body. A read beyond the end gives zero, and makes it not ok().
-class DatagramFilter::Submessage {
- public:
-  Submessage(ByteView header, ByteView body, const GuidPrefix& source)
-      : kind(header[0]), flags(header[1]), body_(body), source_(source) {}
-
-  const std::uint8_t kind;
-  const std::uint8_t flags;
-
-  bool ok() const { return is_ok_; }
-  std::size_t left() const { return is_ok_ ? body_.size() - at_ : 0; }
-  std::size_t size() const { return body_.size(); }
-  std::size_t at() const { return at_; }
-  void skip(std::size_t bytes) {
-    is_ok_ = is_ok_ && bytes <= body_.size() - at_;
-    if (is_ok_) at_ += bytes;
-  }
-  template <class T>
-  T read() {
-    if (left() < sizeof(T)) {
-      is_ok_ = false;
-      return {};
-    }
-    T value{};
-    for (std::size_t i = 0; i < sizeof(T); ++i) {
-      const std::size_t place = (flags & 1) != 0 ? sizeof(T) - 1 - i : i;
-      value = static_cast<T>((static_cast<std::uint64_t>(value) << 8) | body_[at_ + place]);
-    }
-    at_ += sizeof(T);
-    return value;
-  }
-  std::int64_t read_sequence() {
-    const auto high = read<std::uint32_t>();
-    const auto low = read<std::uint32_t>();
-    return static_cast<std::int64_t>((std::uint64_t{high} << 32) | low);
-  }
-  // Nothing: an earlier timestamp does not count, and there is no other.
-  std::optional<SystemTime> read_time() {
-    if ((flags & 2) != 0) return std::nullopt;
-    const auto seconds = read<std::uint32_t>();
-    const std::uint64_t fraction = read<std::uint32_t>();  // of 2^32 (RTPS 2.3 §9.3.2)
-    const auto ns = (fraction * 1'000'000'000 + (std::uint64_t{1} << 31)) >> 32;
-    return SystemTime(std::chrono::seconds(seconds) +
-                      std::chrono::nanoseconds(static_cast<std::int64_t>(ns)));
-  }
-  // A writer of the participant that sent the datagram.
-  Guid read_writer() {
-    Guid guid;
-    std::copy(source_.bytes.begin(), source_.bytes.end(), guid.bytes.begin());
-    if (left() >= 4) std::copy_n(body_.data() + at_, 4, guid.bytes.data() + 12);
-    skip(4);
-    return guid;
-  }
-  // Whether a bitmap follows that its own length and the body hold.
-  bool skip_bitmap() {
-    const auto bits = read<std::uint32_t>();
-    if (bits > 256) return false;
-    skip((bits + 31) / 32 * 4);
-    return ok();
-  }
-  // The head of a sample, or of fragments of one (RTPS 2.3 §9.4.5.3, §9.4.5.4), from the beginning of the body
-  // on. The payload follows.
-  struct Sample {
-    Guid writer;
-    std::int64_t sequence = 0;
-    std::uint32_t first = 0;  // of the fragments, from 1 on
-    std::uint32_t count = 0;
-    std::uint16_t fragment_size = 0;  // bytes
-    std::uint32_t size = 0;           // of all of them
-    ByteView parameters{};            // inline
-  };
-  Sample read_sample() {
-    Sample sample;
-    skip(2);
-    const auto to_parameters = read<std::uint16_t>();
-    const std::size_t counted_from = at_;
-    skip(4);
-    sample.writer = read_writer();
-    sample.sequence = read_sequence();
-    if (kind == rtps::kDataFragment) {
-      sample.first = read<std::uint32_t>();
-      sample.count = read<std::uint16_t>();
-      sample.fragment_size = read<std::uint16_t>();
-      sample.size = read<std::uint32_t>();
-    }
-    is_ok_ = is_ok_ && to_parameters >= at_ - counted_from;
-    if (is_ok_) skip(to_parameters - (at_ - counted_from));
-    const std::size_t begin = at_;
-    if ((flags & rtps::kHasParameters) != 0) skip_parameters();
-    if (is_ok_) sample.parameters = body_.subspan(begin, at_ - begin);
-    return sample;
-  }
-  ByteView rest() const { return is_ok_ ? body_.subspan(at_) : ByteView(); }
-  Endianness order() const { return (flags & 1) != 0 ? Endianness::kLittle : Endianness::kBig; }
-
- private:
-  // A list of parameters that has to end within the body.
-  void skip_parameters() {
-    while (is_ok_) {
-      const auto id = read<std::uint16_t>();
-      const auto length = read<std::uint16_t>();
-      if (id == kSentinel) return;
-      skip((length + 3u) & ~3u);
-    }
-  }
-
-  const ByteView body_;
-  const GuidPrefix& source_;
-  std::size_t at_ = 0;
-  bool is_ok_ = true;
-};
-
 ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_point now,
                               SystemTime received) {
   std::vector<OnUnheard> unheard;
@@ -211,7 +99,7 @@ void DatagramFilter::follow(std::span<std::uint8_t> submessage, ByteView body, C
     std::copy_n(body.data(), course.destination.bytes.size(), course.destination.bytes.begin());
   }
   if (submessage[0] == rtps::kInfoTime)
-    course.sent = Submessage(submessage, body, course.source).read_time();
+    course.sent = SubmessageReader(submessage, body, course.source).read_time();
 }
 
 ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_point now,
@@ -233,7 +121,7 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
     auto [length, is_last, objection] = extent_of(rest);
     if (objection == nullptr) {
       const ByteView body = rest.subspan(rtps::kSubmessageHeader, length);
-      objection = this->objection(Submessage(rest, body, course.source), now);
+      objection = this->objection(SubmessageReader(rest, body, course.source), now);
       if (objection == nullptr) follow(rest, body, course);
     }
     if (objection != nullptr) refused_ = {refused_.count + 1, objection};
@@ -289,9 +177,9 @@ DatagramFilter::Announcement DatagramFilter::take(std::span<std::uint8_t> submes
   if (!is_for_us || course.source == discovery_->self || !participants_.contains(course.source) ||
       submessage.size() < kGapSize + 2 * rtps::kSubmessageHeader)
     return Announcement::kOfMiddleware;
-  Submessage body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
+  SubmessageReader body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
   if (!tell_of_announcement(body)) return Announcement::kOfMiddleware;
-  const Submessage::Sample sample = body.read_sample();
+  const SubmessageReader::Sample sample = body.read_sample();
   CULPRIT_ASSERT(body.ok());  // a gap with another number would hide what was never received
   const bool is_little = body.order() == Endianness::kLittle;
   const auto write = [](std::span<std::uint8_t> to, std::int64_t sequence, bool little) {
@@ -319,11 +207,11 @@ DatagramFilter::Announcement DatagramFilter::take(std::span<std::uint8_t> submes
 }
 
 // Gives whether the middleware need not see it.
-bool DatagramFilter::tell_of_announcement(const Submessage& submessage) {
+bool DatagramFilter::tell_of_announcement(const SubmessageReader& submessage) {
   constexpr std::array<std::uint8_t, 4> kOfWriters = {0, 0, 3, 0xc2};  // RTPS 2.3 §9.3.1.3
   constexpr std::array<std::uint8_t, 4> kOfReaders = {0, 0, 4, 0xc2};
-  Submessage body = submessage;
-  const Submessage::Sample sample = body.read_sample();
+  SubmessageReader body = submessage;
+  const SubmessageReader::Sample sample = body.read_sample();
   const std::span<const std::uint8_t> announcer(sample.writer.bytes.data() + 12, 4);
   const bool is_of_writers = std::ranges::equal(announcer, kOfWriters);
   if (!is_of_writers && !std::ranges::equal(announcer, kOfReaders)) return false;
@@ -397,8 +285,8 @@ bool DatagramFilter::hand_over(Readers::Reader& reader, std::span<const std::uin
     return false;
   if (course.destination != GuidPrefix{} && course.destination != reader.guid.prefix())
     return false;
-  Submessage body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
-  const Submessage::Sample sample = body.read_sample();
+  SubmessageReader body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
+  const SubmessageReader::Sample sample = body.read_sample();
   CULPRIT_ASSERT(body.ok());                        // it passed all checks: its lengths fit
   if (sample.sequence <= reader.last) return true;  // best effort readers pass over what is older
   reader.last = sample.sequence;
@@ -415,8 +303,8 @@ bool DatagramFilter::tries(const Guid& stranger, Clock::time_point now) {
   return known.tries++ < kTries;
 }
 
-const char* DatagramFilter::objection(const Submessage& submessage, Clock::time_point now) {
-  Submessage body = submessage;
+const char* DatagramFilter::objection(const SubmessageReader& submessage, Clock::time_point now) {
+  SubmessageReader body = submessage;
   switch (submessage.kind) {
     case rtps::kData:
       return objection_to_data(submessage, now);
@@ -450,10 +338,11 @@ const char* DatagramFilter::objection(const Submessage& submessage, Clock::time_
   }
 }
 
-const char* DatagramFilter::objection_to_data(const Submessage& submessage, Clock::time_point now) {
+const char* DatagramFilter::objection_to_data(const SubmessageReader& submessage,
+                                              Clock::time_point now) {
   constexpr const char* kDamaged = "a damaged sample";
-  Submessage body = submessage;
-  const Submessage::Sample sample = body.read_sample();
+  SubmessageReader body = submessage;
+  const SubmessageReader::Sample sample = body.read_sample();
   const bool has_payload = (body.flags & rtps::kHasPayload) != 0;
   const bool has_key = (body.flags & rtps::kHasKey) != 0;
   if (!body.ok() || (has_payload && has_key)) return kDamaged;
@@ -465,11 +354,11 @@ const char* DatagramFilter::objection_to_data(const Submessage& submessage, Cloc
   return nullptr;
 }
 
-const char* DatagramFilter::objection_to_fragment(const Submessage& submessage,
+const char* DatagramFilter::objection_to_fragment(const SubmessageReader& submessage,
                                                   Clock::time_point now) {
   constexpr const char* kDamaged = "a damaged fragment";
-  Submessage body = submessage;
-  const Submessage::Sample sample = body.read_sample();
+  SubmessageReader body = submessage;
+  const SubmessageReader::Sample sample = body.read_sample();
   if (!body.ok() || sample.first < 1 || sample.count < 1 || sample.fragment_size < 1 ||
       sample.size < 1)
     return kDamaged;
@@ -485,56 +374,20 @@ const char* DatagramFilter::objection_to_fragment(const Submessage& submessage,
   if (sample.sequence < 1 || is_far(sample.writer, sample.sequence, now))
     return "a fragment with an absurd number";
   came_by(sample.writer, sample.sequence);
-  Assembly assembly;
-  assembly.size = size;
-  assembly.fragment_size = sample.fragment_size;
-  assembly.missing = all;
-  if (const char* reason =
-          reserve(sample.writer, sample.sequence, assembly, sample.first, sample.count))
-    return reason;
+  if (is_heard(sample.writer)) {
+    const auto how = is_reliable(sample.writer) ? Reading::kReliable : Reading::kBestEffort;
+    const char* reason = writers_.reserve(
+        sample.writer, how,
+        {sample.sequence, size, sample.fragment_size, sample.first, sample.count, all});
+    if (reason != nullptr) return reason;
+  }
   learn(sample.writer, sample.sequence, now);
   return nullptr;
 }
 
-// A reliable reader keeps what it has of each sample; one that is best effort what it has of the
-// newest, and its memory for the next.
-const char* DatagramFilter::reserve(const Guid& guid, std::int64_t sequence, const Assembly& wanted,
-                                    std::uint32_t first, std::uint32_t count) {
-  constexpr const char* kTooMuch = "fragments of more than fits the memory";
-  if (!is_heard(guid)) return nullptr;
-  const bool keeps_all = is_reliable(guid);
-  Writer& writer = writers_[guid];
-  auto found = writer.assemblies.find(sequence);
-  if (found == writer.assemblies.end()) {
-    const std::size_t of_one = keeps_all ? kReliableOfOne : kLargest;
-    const std::size_t of_all = keeps_all ? kReliableOfAll : kLargestOfAll;
-    if (!keeps_all && !writer.assemblies.empty() && writer.assemblies.begin()->first > sequence)
-      return nullptr;  // of an older sample, which the reader passes over
-    const std::size_t reserved =
-        keeps_all ? writer.reserved + kept_for(wanted) : std::max(writer.reserved, wanted.size);
-    if (reserved > of_one || total(guid) - writer.reserved + reserved > of_all) return kTooMuch;
-    total(guid) += reserved - writer.reserved;
-    writer.reserved = reserved;
-    if (!keeps_all) writer.assemblies.clear();
-    found = writer.assemblies.emplace(sequence, wanted).first;
-    if (keeps_all) found->second.seen.resize(wanted.missing);
-  }
-  Assembly& assembly = found->second;
-  if (assembly.size != wanted.size || assembly.fragment_size != wanted.fragment_size)
-    return "fragments that contradict one another";
-  if (!keeps_all || assembly.seen.empty()) return nullptr;
-  for (std::size_t i = first - 1; i < std::size_t{first} - 1 + count; ++i) {
-    if (assembly.seen[i]) continue;
-    assembly.seen[i] = true;
-    --assembly.missing;
-  }
-  if (assembly.missing == 0) release(guid, writer, found);
-  return nullptr;
-}
-
-const char* DatagramFilter::objection_to_heartbeat(const Submessage& submessage,
+const char* DatagramFilter::objection_to_heartbeat(const SubmessageReader& submessage,
                                                    Clock::time_point now) {
-  Submessage body = submessage;
+  SubmessageReader body = submessage;
   body.skip(4);
   const Guid guid = body.read_writer();
   const std::int64_t first = body.read_sequence();
@@ -546,18 +399,15 @@ const char* DatagramFilter::objection_to_heartbeat(const Submessage& submessage,
       (is_reliable(guid) && is_far(guid, first, now)))
     return "a heartbeat with an absurd number";
   learn(guid, last, now);
-  const auto known = writers_.find(guid);
-  if (known == writers_.end() || !is_reliable(guid)) return nullptr;
-  auto& assemblies = known->second.assemblies;
-  while (!assemblies.empty() && assemblies.begin()->first < first)
-    release(guid, known->second, assemblies.begin());
+  if (is_reliable(guid)) writers_.has_none_before(guid, first);
   return nullptr;
 }
 
 // A new reader may first receive the gap for all earlier samples of a writer. So a gap may be as
 // far ahead as a heartbeat.
-const char* DatagramFilter::objection_to_gap(const Submessage& submessage, Clock::time_point now) {
-  Submessage body = submessage;
+const char* DatagramFilter::objection_to_gap(const SubmessageReader& submessage,
+                                             Clock::time_point now) {
+  SubmessageReader body = submessage;
   body.skip(4);
   const Guid guid = body.read_writer();
   const std::int64_t first = body.read_sequence();
@@ -582,40 +432,14 @@ bool DatagramFilter::is_reliable(const Guid& writer) const {
   return readers != readers_.end() && readers->second.is_reliable();
 }
 
-bool DatagramFilter::is_far(const Guid& guid, std::int64_t sequence, Clock::time_point now) const {
-  const auto known = writers_.find(guid);
-  if (known == writers_.end() || known->second.last == 0)
-    return sequence > (is_heard(guid) && is_reliable(guid) ? kFirstReliable : kFirst);
-  const auto silence = std::chrono::duration<double>(now - known->second.heard).count();
-  const auto ahead = static_cast<std::int64_t>(std::clamp(silence, 0.0, 1e6) * kPerSecond);
-  return sequence > known->second.last + kAhead + ahead;
+bool DatagramFilter::is_far(const Guid& writer, std::int64_t sequence,
+                            Clock::time_point now) const {
+  if (const auto furthest = writers_.furthest(writer, now)) return sequence > *furthest;
+  return sequence > (is_heard(writer) && is_reliable(writer) ? kFirstReliable : kFirst);
 }
 
-void DatagramFilter::learn(const Guid& guid, std::int64_t sequence, Clock::time_point now) {
-  if (!is_heard(guid)) return;
-  Writer& writer = writers_[guid];
-  writer.last = std::max(writer.last, sequence);
-  writer.heard = now;
-}
-
-std::size_t& DatagramFilter::total(const Guid& writer) {
-  return is_reliable(writer) ? reserved_reliable_ : reserved_best_effort_;
-}
-
-// Below zero, the limits would be those of no memory.
-void DatagramFilter::give_back(const Guid& writer, std::size_t bytes) {
-  std::size_t& all = total(writer);
-  CULPRIT_ASSERT(bytes <= all);
-  all -= bytes;
-}
-
-void DatagramFilter::release(const Guid& guid, Writer& writer,
-                             std::map<std::int64_t, Assembly>::iterator which) {
-  const std::size_t kept = kept_for(which->second);
-  CULPRIT_ASSERT(kept <= writer.reserved);
-  give_back(guid, kept);
-  writer.reserved -= kept;
-  writer.assemblies.erase(which);
+void DatagramFilter::learn(const Guid& writer, std::int64_t sequence, Clock::time_point now) {
+  if (is_heard(writer)) writers_.wrote(writer, sequence, now);
 }
 
 void DatagramFilter::came_by(const Guid& writer, std::int64_t sequence) {
@@ -632,18 +456,10 @@ void DatagramFilter::delivered(const Guid& writer) {
   if (found != readers_.end()) found->second.unheard = 0;
 }
 
-// Frees the writer's reservations, and forgets the writer.
-void DatagramFilter::drop(const Guid& guid) {
-  const auto known = writers_.find(guid);
-  if (known == writers_.end()) return;
-  give_back(guid, known->second.reserved);
-  writers_.erase(known);
-}
-
 void DatagramFilter::begin_hearing(const Guid& writer, const Guid& reader, Reading how,
                                    OnUnheard on_unheard, OnWhole on_whole) {
   const MutexLock lock(mutex_);
-  if (how == Reading::kReliable && !is_reliable(writer)) drop(writer);
+  if (how == Reading::kReliable && !is_reliable(writer)) writers_.forget(writer);
   Readers& readers = readers_[writer];
   readers.all.push_back({reader, how, std::move(on_whole)});
   strangers_.erase(writer);
@@ -657,7 +473,8 @@ void DatagramFilter::end_hearing(const Guid& writer, const Guid& reader) {
   Readers readers = found->second;
   std::erase_if(readers.all, [&](const Readers::Reader& each) { return each.guid == reader; });
   // The reservations were counted for the previous kind of reader.
-  if (readers.all.empty() || readers.is_reliable() != found->second.is_reliable()) drop(writer);
+  if (readers.all.empty() || readers.is_reliable() != found->second.is_reliable())
+    writers_.forget(writer);
   if (readers.all.empty()) {
     readers_.erase(found);
   } else {
@@ -677,11 +494,7 @@ void DatagramFilter::know(const GuidPrefix& participant) {
 
 void DatagramFilter::forget(const GuidPrefix& participant) {
   const MutexLock lock(mutex_);
-  std::erase_if(writers_, [&](const auto& each) CULPRIT_REQUIRES(mutex_) {
-    if (each.first.prefix() != participant) return false;
-    give_back(each.first, each.second.reserved);
-    return true;
-  });
+  writers_.forget(participant);
   std::erase_if(readers_, [&](const auto& each) { return each.first.prefix() == participant; });
   std::erase_if(announced_, [&](const auto& each) { return each.first.prefix() == participant; });
   participants_.erase(participant);

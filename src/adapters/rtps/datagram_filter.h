@@ -9,10 +9,9 @@
 //
 //   structure         lengths that do not fit, lists that do not end, bitmaps of more than 256 bits.
 //   sequence numbers  further ahead of the writer's last known number than it can have written
-//                     since: kAhead, and kPerSecond for each second of silence;
-//                     gaps no further ahead than heartbeats may be.
-//   fragments         of samples that are larger than the budgets below, or that contradict
-//                     earlier fragments of the same sample.
+//                     since (writer_records.h); gaps no further ahead than heartbeats may be.
+//   fragments         of samples that are larger than the budgets (writer_records.h), or that
+//                     contradict earlier fragments of the same sample.
 //
 // The content of secured submessages is not checked here: their signatures prove them.
 //
@@ -37,7 +36,6 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -51,7 +49,9 @@
 #include "rtps/cdr.h"
 #include "rtps/endpoint_info.h"
 #include "rtps/guid.h"
+#include "rtps/submessage_reader.h"
 #include "rtps/system_time.h"
+#include "rtps/writer_records.h"
 
 namespace culprit::ros2 {
 
@@ -60,20 +60,10 @@ class DatagramFilter {
  public:
   using Clock = std::chrono::steady_clock;
 
-  static constexpr std::int64_t kAhead = 256;
-  static constexpr std::int64_t kPerSecond = 10'000;
   // Limits for a writer that is not known yet. A reliable reader counts through all earlier
   // numbers.
   static constexpr std::int64_t kFirst = std::int64_t{1} << 40;
   static constexpr std::int64_t kFirstReliable = std::int64_t{1} << 20;
-
-  // Limits in bytes for samples that come in fragments: those that reliable readers keep until they
-  // are complete, of one writer and of all; and the largest samples of best effort writers, of one
-  // and of all.
-  static constexpr std::size_t kReliableOfOne = 4u << 20;
-  static constexpr std::size_t kReliableOfAll = 8u << 20;
-  static constexpr std::size_t kLargest = 32u << 20;
-  static constexpr std::size_t kLargestOfAll = 32u << 20;
 
   // Gives the part of `datagram` that may be passed on, after taking out and addressing
   // submessages; empty: none. `now` never goes back by much. `received`: when it came, which may be
@@ -86,7 +76,7 @@ class DatagramFilter {
   static constexpr int kUnheard = 3;
   // The number of samples in a second that are passed on from a writer without a known reader.
   static constexpr int kTries = 8;
-  enum class Reading : std::uint8_t { kBestEffort, kReliable };
+  using Reading = WriterRecords::Reading;
   // A sample that came whole. `payload` is invalid when the callback returns.
   struct Whole {
     Guid writer;
@@ -146,24 +136,6 @@ class DatagramFilter {
   void note_refused(const char* why);
 
  private:
-  struct Assembly {
-    std::size_t size = 0;
-    std::uint16_t fragment_size = 0;
-    std::vector<bool> seen;  // by fragment; of reliable writers only
-    std::size_t missing = 0;
-  };
-  // Bytes that a reliable reader keeps for it: a sample of one byte needs a description, too.
-  static std::size_t kept_for(const Assembly& sample) {
-    constexpr std::size_t kDescription = 512;
-    return sample.size + kDescription;
-  }
-  struct Writer {
-    std::int64_t last = 0;  // written, as far as is known
-    Clock::time_point heard;
-    std::map<std::int64_t, Assembly> assemblies;  // by sequence number; of best effort writers one
-    std::size_t reserved = 0;                     // bytes
-  };
-  class Submessage;
   // The header data of a datagram for the submessages that follow.
   struct Course {
     GuidPrefix source;
@@ -187,20 +159,18 @@ class DatagramFilter {
   enum class Announcement : std::uint8_t { kOfMiddleware, kGap, kInGapBefore };
   Announcement take(std::span<std::uint8_t> submessage, const Course& course, Gap& last)
       CULPRIT_REQUIRES(mutex_);
-  bool tell_of_announcement(const Submessage& submessage) CULPRIT_REQUIRES(mutex_);
+  bool tell_of_announcement(const SubmessageReader& submessage) CULPRIT_REQUIRES(mutex_);
   bool tries(const Guid& stranger, Clock::time_point now) CULPRIT_REQUIRES(mutex_);
-  const char* objection(const Submessage& submessage, Clock::time_point now)
+  const char* objection(const SubmessageReader& submessage, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
-  const char* objection_to_data(const Submessage& submessage, Clock::time_point now)
+  const char* objection_to_data(const SubmessageReader& submessage, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
-  const char* objection_to_fragment(const Submessage& submessage, Clock::time_point now)
+  const char* objection_to_fragment(const SubmessageReader& submessage, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
-  const char* objection_to_heartbeat(const Submessage& submessage, Clock::time_point now)
+  const char* objection_to_heartbeat(const SubmessageReader& submessage, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
-  const char* objection_to_gap(const Submessage& submessage, Clock::time_point now)
+  const char* objection_to_gap(const SubmessageReader& submessage, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
-  const char* reserve(const Guid& guid, std::int64_t sequence, const Assembly& wanted,
-                      std::uint32_t first, std::uint32_t count) CULPRIT_REQUIRES(mutex_);
 
   // The readers of this participant that receive one writer.
   struct Readers {
@@ -226,20 +196,13 @@ class DatagramFilter {
       CULPRIT_REQUIRES(mutex_);
   void learn(const Guid& writer, std::int64_t sequence, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
-  void drop(const Guid& writer) CULPRIT_REQUIRES(mutex_);
   void came_by(const Guid& writer, std::int64_t sequence) CULPRIT_REQUIRES(mutex_);
-  void release(const Guid& guid, Writer& writer, std::map<std::int64_t, Assembly>::iterator which)
-      CULPRIT_REQUIRES(mutex_);
-  std::size_t& total(const Guid& writer) CULPRIT_REQUIRES(mutex_);
-  void give_back(const Guid& writer, std::size_t bytes) CULPRIT_REQUIRES(mutex_);
 
   mutable Mutex mutex_;
-  std::unordered_map<Guid, Writer> writers_ CULPRIT_GUARDED_BY(mutex_);  // with a reader here
+  WriterRecords writers_ CULPRIT_GUARDED_BY(mutex_);  // of those with a reader here
   std::unordered_map<Guid, Readers> readers_
       CULPRIT_GUARDED_BY(mutex_);  // by the writer that they receive
   std::unordered_set<GuidPrefix> participants_ CULPRIT_GUARDED_BY(mutex_);  // that are there
-  std::size_t reserved_reliable_ CULPRIT_GUARDED_BY(mutex_) = 0;
-  std::size_t reserved_best_effort_ CULPRIT_GUARDED_BY(mutex_) = 0;
   Refused refused_ CULPRIT_GUARDED_BY(mutex_);
   // Writers without a known reader: the samples that were passed on in this second.
   struct Stranger {

@@ -160,21 +160,21 @@ TEST_F(Filter, WhatFragmentsTakeIsBounded) {
   std::size_t came = 0;
   for (std::int64_t sequence = 1; sequence <= 600; ++sequence)
     came += passes(from(kDiscovery).fragment(kDiscovery, sequence, 1, 1000, 1'000'000)) ? 1 : 0;
-  EXPECT_EQ(came, DatagramFilter::kReliableOfOne / 1'000'000);
+  EXPECT_EQ(came, WriterRecords::kReliableOfOne / 1'000'000);
   EXPECT_TRUE(passes(from(kDiscovery).data(kDiscovery, came + 1))) << "it still passes";
   for (std::uint8_t participant = 3; participant < 200; ++participant) {
     const Guid other = builtin_writer(3, participant);
     filter.know(other.prefix());
     came += passes(from(other).fragment(other, 1, 1, 1000, 3'000'000)) ? 3 : 0;
   }
-  EXPECT_LE(came, DatagramFilter::kReliableOfAll / 1'000'000);
+  EXPECT_LE(came, WriterRecords::kReliableOfAll / 1'000'000);
 }
 
 TEST_F(Filter, ManySmallSamplesInFragmentsAreBounded) {
   std::size_t came = 0;
   for (std::int64_t number = 1; number <= 20'000; ++number)
     came += passes(from(kService).fragment(kService, number, 1, 1, 2)) ? 1 : 0;
-  EXPECT_LE(came, DatagramFilter::kReliableOfOne / 512);
+  EXPECT_LE(came, WriterRecords::kReliableOfOne / 512);
 }
 
 TEST_F(Filter, KeepsNothingOfWritersThatTheMiddlewareDoesNotRead) {
