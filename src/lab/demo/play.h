@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/expected.h"
-#include "exemplars/sunset/scenario.h"
+#include "exemplars/sunset/sunset_scenario.h"
 
 namespace culprit::lab {
 

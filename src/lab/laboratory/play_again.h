@@ -13,8 +13,8 @@
 
 namespace culprit::lab {
 
-// `study` and `campaign` are what a result says (sunset_study/json.h, suave_study/report.h,
-// rca_study/report.h), of whatever origin. Errors: the campaign is invalid; it has no such run.
+// `study` and `campaign` are what a result says (sunset_study/json.h, suave_study/suave_report.h,
+// rca_study/rca_report.h), of whatever origin. Errors: the campaign is invalid; it has no such run.
 Expected<study::SingleRun> play_again(std::string_view study, const Json& campaign,
                                       study::RunId id);
 

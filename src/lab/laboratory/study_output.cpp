@@ -6,7 +6,7 @@
 #include "study/csv.h"
 #include "study/tables/render.h"
 #include "study/tables/study_tables.h"
-#include "suave_study/report.h"
+#include "suave_study/suave_report.h"
 #include "sunset_study/json.h"
 
 namespace culprit::lab {

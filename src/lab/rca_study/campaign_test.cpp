@@ -4,7 +4,7 @@
 
 #include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
-#include "rca_study/report.h"
+#include "rca_study/rca_report.h"
 #include "rca_study/rules.h"
 
 namespace culprit::study::rca {

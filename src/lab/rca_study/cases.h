@@ -17,7 +17,7 @@
 
 #include "manager/runtime.h"
 #include "plan/bayes/objective.h"
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 
 namespace culprit::study::rca {
 

@@ -9,7 +9,7 @@
 #include "knowledge/latencies.h"
 #include "knowledge/transients.h"
 #include "plan/planner.h"
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 #include "study/single_run.h"
 
 namespace culprit::study::rca {

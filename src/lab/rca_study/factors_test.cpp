@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "rca_study/campaign.h"
+#include "rca_study/rca_report.h"
 #include "rca_study/rca_robot.h"
-#include "rca_study/report.h"
 #include "rca_study/rules.h"
 #include "rca_study/scenario_json.h"
 

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "rca_study/factors.h"
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 
 namespace culprit::study::rca {
 

@@ -15,7 +15,7 @@
 #include "plan/bayes/objective.h"
 #include "rca_study/calibration.h"
 #include "rca_study/generator.h"
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 
 namespace culprit::study::rca {
 

@@ -10,7 +10,7 @@
 #include <functional>
 #include <optional>
 
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 #include "simulation/agenda.h"
 #include "simulation/random.h"
 

@@ -7,7 +7,7 @@
 // components as the scenario has faults. Each fault is of any of the seven kinds, equally likely,
 // and subscription e passes with its probability q_e. F only becomes smaller.
 //
-// Seen: which components are ill, which F and E determine (scenario.h), and whose process is gone,
+// Seen: which components are ill, which F and E determine (rca_scenario.h), and whose process is gone,
 // which a crash shows. Detectors make no mistakes, and what is seen has settled.
 //
 // A round: strategies s in a set A, each at an ill component c, begin together; then all is seen
@@ -54,7 +54,7 @@
 
 #include "knowledge/knowledge.h"
 #include "plan/bayes/objective.h"
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 
 namespace culprit::study::rca {
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 
 namespace culprit::study::rca {
 

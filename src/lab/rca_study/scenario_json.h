@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/expected.h"
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 
 namespace culprit::study::rca {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "plan/planner.h"
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 
 namespace culprit::study::rca {
 

@@ -9,7 +9,7 @@
 #include "study/claim.h"
 #include "study/statistics/welch.h"
 #include "suave_study/published.h"
-#include "suave_study/report.h"
+#include "suave_study/suave_report.h"
 #include "suave_study/track.h"
 
 namespace culprit::study {

@@ -1,6 +1,6 @@
 #include "sunset_study/json.h"
 
-#include "exemplars/sunset/scenario.h"
+#include "exemplars/sunset/sunset_scenario.h"
 #include "json/json.h"
 #include "study/run_record.h"
 

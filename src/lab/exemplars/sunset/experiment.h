@@ -21,7 +21,7 @@
 #include "base/expected.h"
 #include "exemplars/sunset/node_control.h"
 #include "exemplars/sunset/observer.h"
-#include "exemplars/sunset/scenario.h"
+#include "exemplars/sunset/sunset_scenario.h"
 #include "ros2/node.h"
 #include "ros2/options.h"
 #include "ros2/timer.h"

@@ -1,4 +1,4 @@
-// The live robot keeps its promises: each fault shows as the failures that scenario.h says, the
+// The live robot keeps its promises: each fault shows as the failures that sunset_scenario.h says, the
 // right adaptations end them, and the wrong ones do not.
 #include <algorithm>
 #include <chrono>

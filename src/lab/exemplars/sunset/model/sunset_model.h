@@ -12,7 +12,7 @@
 #include "exemplars/sunset/model/image_enhancement.h"
 #include "exemplars/sunset/model/segmentation.h"
 #include "exemplars/sunset/model/sensor_fusion.h"
-#include "exemplars/sunset/scenario.h"
+#include "exemplars/sunset/sunset_scenario.h"
 
 namespace culprit::sunset::model {
 

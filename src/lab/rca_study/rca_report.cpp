@@ -1,4 +1,4 @@
-#include "rca_study/report.h"
+#include "rca_study/rca_report.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "rca_study/scenario.h"
+#include "rca_study/rca_scenario.h"
 
 namespace culprit::study::rca {
 

@@ -1,4 +1,4 @@
-#include "exemplars/sunset/scenario.h"
+#include "exemplars/sunset/sunset_scenario.h"
 
 #include <algorithm>
 #include <cstdint>

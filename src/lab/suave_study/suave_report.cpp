@@ -1,4 +1,4 @@
-#include "suave_study/report.h"
+#include "suave_study/suave_report.h"
 
 #include <algorithm>
 
