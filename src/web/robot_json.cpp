@@ -61,9 +61,10 @@ Json value_of(const Slot& slot, const Input& input) {
       return slot.i;
     case Type::kString:
       return std::string(slot.s);
-    default:
+    case Type::kDouble:
       return std::isfinite(slot.d) ? Json(slot.d) : Json(nullptr);
   }
+  return nullptr;
 }
 
 std::string_view word_of(RulePhase phase) {

@@ -102,9 +102,11 @@ std::string body_for(Destination::Kind kind, const Alert& alert) {
       return to_line(slack(alert));
     case Destination::Kind::kAlertmanager:
       return to_line(alertmanager(alert));
-    default:
-      return as_json(alert);
+    case Destination::Kind::kJson:
+    case Destination::Kind::kCommand:
+      break;
   }
+  return as_json(alert);
 }
 
 std::string path_for(Destination::Kind kind, const Url& url) {

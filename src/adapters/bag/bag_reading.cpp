@@ -396,9 +396,17 @@ std::string BagReading::why_unknown(InputId id) const {
       return levels_[input.diagnostic.index]
                  ? ""
                  : why_no_status(rules_.diagnostics[input.diagnostic.index].name);
-    default:
-      return why_no_signal(input.signal);
+    case Input::Kind::kSignal:
+    case Input::Kind::kMean:
+    case Input::Kind::kMin:
+    case Input::Kind::kMax:
+    case Input::Kind::kStddev:
+    case Input::Kind::kChanged:
+    case Input::Kind::kIsNan:
+    case Input::Kind::kFrozen:
+      break;
   }
+  return why_no_signal(input.signal);
 }
 
 bool BagReading::is_misread(InputId id) const {

@@ -161,9 +161,11 @@ bool is_of_missing(const Failure& failure) {
       return is_absent;
     case Step::kRun:
       return is_absent || failure.why == ETXTBSY;
-    default:
-      return false;
+    case Step::kPrepare:
+    case Step::kOpenLog:
+      break;
   }
+  return false;
 }
 
 // In the child. Comes back only if it fails, or if it is not to be run.

@@ -13,35 +13,22 @@ namespace {
 
 using Kind = Input::Kind;
 
-bool is_of_topic(const Input& input) {
-  return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi ||
-         input.kind == Kind::kLoss || input.kind == Kind::kGoals || input.kind == Kind::kGoalAge;
-}
-
-bool is_of_component(const Input& input) {
-  return input.kind == Kind::kAlive || input.kind == Kind::kLifecycle || input.kind == Kind::kCpu ||
-         input.kind == Kind::kMemory || input.kind == Kind::kLogs;
-}
-
-bool is_of_signal(const Input& input) {
-  return !is_of_topic(input) && !is_of_component(input) && input.kind != Kind::kParameter &&
-         input.kind != Kind::kLevel;
-}
-
 // The part of the input that the robot never had.
 Nameable never_seen_of(const Input& input, const Knowledge& knowledge) {
   const Discovered& discovered = knowledge.discovered;
-  if (is_of_topic(input)) return input.topic;
-  if (is_of_component(input)) return input.component;
-  switch (input.kind) {
-    case Kind::kParameter: {
+  switch (input.subject()) {
+    case Input::Subject::kTopic:
+      return input.topic;
+    case Input::Subject::kComponent:
+      return input.component;
+    case Input::Subject::kParameter: {
       const ComponentId component = knowledge.rules[input.parameter].component;
       if (!discovered.has(component)) return component;
       return input.parameter;
     }
-    case Kind::kLevel:
+    case Input::Subject::kDiagnostic:
       return input.diagnostic;
-    default:
+    case Input::Subject::kSignal:
       break;
   }
   const auto& source = knowledge.rules[input.signal].source;
@@ -223,7 +210,14 @@ std::optional<Unseen> BlindWatch::why_without_value(InputId id, Time now) const 
       return unless_seen(discovered.was_read(input.parameter));
     case Kind::kLevel:
       return unless_seen(discovered.was_read(input.diagnostic));
-    default:
+    case Kind::kSignal:
+    case Kind::kMean:
+    case Kind::kMin:
+    case Kind::kMax:
+    case Kind::kStddev:
+    case Kind::kChanged:
+    case Kind::kIsNan:
+    case Kind::kFrozen:
       break;
   }
   if (!discovered.was_read(input.signal)) return Unseen::kNeverSeen;
@@ -237,9 +231,11 @@ std::optional<Unseen> BlindWatch::why_without_value(InputId id, Time now) const 
     case WhyUnknown::kNotANumber:
     case WhyUnknown::kUnreadable:
       return Unseen::kUnreadable;
-    default:
-      return Unseen::kUnknown;
+    case WhyUnknown::kNoValue:
+    case WhyUnknown::kOverflow:
+      break;
   }
+  return Unseen::kUnknown;
 }
 
 Duration BlindWatch::debounce(RuleId id, Time now) const {
@@ -249,9 +245,12 @@ Duration BlindWatch::debounce(RuleId id, Time now) const {
     if (!why || *why == Unseen::kNeverSeen) continue;
     const Input& read = knowledge_.rules[input];
     if (*why == Unseen::kNotCovered) longest = std::max(longest, read.window + kDebounce);
-    longest = std::max(longest, is_of_topic(read) ? knowledge_.signals.rhythm(read.topic).gap
-                                                  : knowledge_.signals.arrivals(input).gap);
-    const auto stale = is_of_signal(read) ? knowledge_.rules[read.signal].stale : std::nullopt;
+    longest = std::max(longest, read.subject() == Input::Subject::kTopic
+                                    ? knowledge_.signals.rhythm(read.topic).gap
+                                    : knowledge_.signals.arrivals(input).gap);
+    const auto stale = read.subject() == Input::Subject::kSignal
+                           ? knowledge_.rules[read.signal].stale
+                           : std::nullopt;
     if (stale) longest = std::max(longest, *stale);
   }
   return longest;

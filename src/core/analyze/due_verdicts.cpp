@@ -14,32 +14,16 @@ namespace {
 // May the input's value come from the component? The sources of signals and diagnostics are
 // unknown.
 bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowledge) {
-  using Kind = Input::Kind;
-  switch (input.kind) {
-    case Kind::kRate:
-    case Kind::kAge:
-    case Kind::kPhi:
-    case Kind::kLoss:
-    case Kind::kGoals:
-    case Kind::kGoalAge:
+  using Subject = Input::Subject;
+  switch (input.subject()) {
+    case Subject::kTopic:
       return knowledge.graph.publishes(component, knowledge.rules[input.topic]);
-    case Kind::kAlive:
-    case Kind::kLifecycle:
-    case Kind::kCpu:
-    case Kind::kMemory:
-    case Kind::kLogs:
+    case Subject::kComponent:
       return input.component == component;
-    case Kind::kParameter:
+    case Subject::kParameter:
       return knowledge.rules.parameters[input.parameter.index].component == component;
-    case Kind::kSignal:
-    case Kind::kLevel:
-    case Kind::kMean:
-    case Kind::kMin:
-    case Kind::kMax:
-    case Kind::kStddev:
-    case Kind::kChanged:
-    case Kind::kIsNan:
-    case Kind::kFrozen:
+    case Subject::kSignal:
+    case Subject::kDiagnostic:
       break;
   }
   return true;

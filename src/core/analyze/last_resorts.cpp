@@ -24,11 +24,21 @@ bool is_lost(const Adaptation& adaptation, Time since, const ComponentState& sta
     case AdaptationType::kActivate:
       return comes_up && (state.lifecycle == Lifecycle::kInactive ||
                           state.lifecycle == Lifecycle::kUnconfigured);
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter:
+    case AdaptationType::kChangeCommunication:
     case AdaptationType::kChangeMode:
       return state.node_seen > since;
-    default:
-      return syntax::names_parameter(adaptation.type) && state.node_seen > since;
+    case AdaptationType::kRestart:
+    case AdaptationType::kRedeploy:
+    case AdaptationType::kStart:
+    case AdaptationType::kStop:
+    case AdaptationType::kCall:
+    case AdaptationType::kStartGroup:
+      break;
   }
+  return false;
 }
 
 // Its changes stay from now on.

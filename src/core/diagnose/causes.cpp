@@ -301,9 +301,16 @@ bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledg
     case Trouble::kNeverSeen:
     case Trouble::kNotYetActive:
       return never_worked(rule, knowledge);
-    default:
-      return can_precede(j, i);
+    case Trouble::kExited:
+    case Trouble::kStopped:
+    case Trouble::kLeft:
+    case Trouble::kStarting:
+    case Trouble::kHung:
+    case Trouble::kNotActive:
+    case Trouble::kSilent:
+      break;
   }
+  return can_precede(j, i);
 }
 
 // In a loop of the graph each may have silenced the other: the one that fell silent first did.

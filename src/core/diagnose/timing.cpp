@@ -64,23 +64,14 @@ bool watches_a_component(const Input& input) {
 bool tells_of_data(RuleId rule, const RuleSet& rules) {
   const auto is_data = [&](InputId id) {
     const Input& input = rules[id];
-    switch (input.kind) {
-      case Kind::kAlive:
-      case Kind::kLifecycle:
-      case Kind::kParameter:
-      case Kind::kCpu:
-      case Kind::kMemory:
-      case Kind::kLogs:
+    switch (input.subject()) {
+      case Input::Subject::kComponent:
+      case Input::Subject::kParameter:
         return false;
-      case Kind::kRate:
-      case Kind::kAge:
-      case Kind::kPhi:
-      case Kind::kLoss:
-      case Kind::kGoals:
-      case Kind::kGoalAge:
-      case Kind::kLevel:
+      case Input::Subject::kTopic:
+      case Input::Subject::kDiagnostic:
         return true;
-      default:
+      case Input::Subject::kSignal:
         break;
     }
     const auto& source = rules[input.signal].source;

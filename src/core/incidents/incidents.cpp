@@ -110,7 +110,9 @@ std::string next_of(RuleId rule, const Knowledge& knowledge) {
         return strategy + " is being carried out";
       case Attempt::Stage::kUndoing:
         return "culprit undoes " + strategy;
-      default:
+      case Attempt::Stage::kWaiting:
+      case Attempt::Stage::kSuspended:
+      case Attempt::Stage::kOver:
         break;
     }
     if (state.attempt->deadline == kNever) return "waits until it clears";

@@ -137,9 +137,18 @@ std::string describe_end_of_wait(const Candidate& candidate, const RuleSet& rule
     case Condition::kSettling:
       return "if " + rules[strategy.rule].name + " still fails after " + time + ", " +
              are_responsible;
-    default:
-      return "";
+    case Condition::kTried:
+    case Condition::kInvalid:
+    case Condition::kAdapting:
+    case Condition::kAffected:
+    case Condition::kOneEach:
+    case Condition::kDownstream:
+    case Condition::kInTheWay:
+    case Condition::kWithheld:
+    case Condition::kUnheard:
+      break;
   }
+  return "";
 }
 
 }  // namespace culprit

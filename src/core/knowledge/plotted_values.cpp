@@ -22,9 +22,10 @@ float plotted_value(const Slot& slot, const Input& input) {
       return static_cast<float>(slot.i);
     case Type::kString:
       return kUnplotted;
-    default:
+    case Type::kDouble:
       return std::isfinite(slot.d) ? static_cast<float>(slot.d) : kUnplotted;
   }
+  return kUnplotted;
 }
 
 }  // namespace

@@ -82,9 +82,22 @@ Op arithmetic_op(Operator op, bool exact) {
       return exact ? Op::kMultiplyInt : Op::kMultiplyDouble;
     case Operator::kDivide:
       return exact ? Op::kDivideInt : Op::kDivideDouble;
-    default:
+    case Operator::kRemainder:
       return exact ? Op::kRemainderInt : Op::kRemainderDouble;
+    case Operator::kNot:
+    case Operator::kNegate:
+    case Operator::kPlus:
+    case Operator::kLess:
+    case Operator::kLessEqual:
+    case Operator::kGreater:
+    case Operator::kGreaterEqual:
+    case Operator::kEqual:
+    case Operator::kNotEqual:
+    case Operator::kAnd:
+    case Operator::kOr:
+      break;
   }
+  return kNone;
 }
 
 }  // namespace
@@ -229,9 +242,18 @@ std::optional<Typed> Typer::binary(const Expression& e) {
     case Operator::kEqual:
     case Operator::kNotEqual:
       return compare(e, std::move(*left), std::move(*right));
-    default:
+    case Operator::kMultiply:
+    case Operator::kDivide:
+    case Operator::kRemainder:
+    case Operator::kAdd:
+    case Operator::kSubtract:
       return arithmetic(e, std::move(*left), std::move(*right));
+    case Operator::kNot:  // of one operand
+    case Operator::kNegate:
+    case Operator::kPlus:
+      break;
   }
+  return std::nullopt;
 }
 
 // Reported, if neither name is declared.

@@ -54,9 +54,16 @@ std::optional<Slot> brought_about(const Adaptation& adaptation, const Input& inp
       return is_alive ? std::optional(Slot::of(true)) : std::nullopt;
     case AdaptationType::kStop:
       return is_alive ? std::optional(Slot::of(false)) : std::nullopt;
-    default:
-      return std::nullopt;
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter:
+    case AdaptationType::kChangeCommunication:
+    case AdaptationType::kChangeMode:
+    case AdaptationType::kCall:
+    case AdaptationType::kStartGroup:
+      break;
   }
+  return std::nullopt;
 }
 
 bool makes_true(const Strategy& strategy, const Program& when, const Knowledge& knowledge) {

@@ -13,9 +13,17 @@ bool reconfigures(const Adaptation& adaptation) {
     case AdaptationType::kStart:
     case AdaptationType::kStop:
       return false;
-    default:
-      return true;
+    case AdaptationType::kActivate:
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter:
+    case AdaptationType::kChangeCommunication:
+    case AdaptationType::kChangeMode:
+    case AdaptationType::kCall:
+    case AdaptationType::kStartGroup:
+      break;
   }
+  return true;
 }
 
 bool reconfigures(const Strategy& strategy) {

@@ -86,7 +86,16 @@ std::string obstacle(const Adaptation& adaptation, bool is_of_last_resort,
       return is_alive ? "is there already" : "";
     case AdaptationType::kStop:
       return is_alive || state.known_pid() != 0 ? "" : "is not there";
-    default:
+    case AdaptationType::kActivate:
+    case AdaptationType::kDeactivate:
+    case AdaptationType::kRestart:
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter:
+    case AdaptationType::kChangeCommunication:
+    case AdaptationType::kChangeMode:
+    case AdaptationType::kCall:
+    case AdaptationType::kStartGroup:
       break;
   }
   if (!is_alive && !(is_of_last_resort && state.may_still_obey())) return "is not alive";
@@ -101,9 +110,18 @@ std::string obstacle(const Adaptation& adaptation, bool is_of_last_resort,
       return has_lifecycle(state.lifecycle) ? "" : "has no known lifecycle state";
     case AdaptationType::kChangeCommunication:
       return uses_already(adaptation, knowledge) ? "uses " + adaptation.topic + " already" : "";
-    default:
-      return "";
+    case AdaptationType::kRedeploy:
+    case AdaptationType::kStart:
+    case AdaptationType::kStop:
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter:
+    case AdaptationType::kChangeMode:
+    case AdaptationType::kCall:
+    case AdaptationType::kStartGroup:
+      break;
   }
+  return "";
 }
 
 // Whether there is nothing left to do for it: an earlier try may have got so far.
@@ -119,24 +137,30 @@ bool is_met(const Adaptation& adaptation, const Knowledge& knowledge) {
       return is_alive;
     case AdaptationType::kStop:
       return state.alive == false && state.known_pid() == 0;
-    default:
-      return false;
+    case AdaptationType::kRestart:
+    case AdaptationType::kRedeploy:
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter:
+    case AdaptationType::kChangeCommunication:
+    case AdaptationType::kChangeMode:
+    case AdaptationType::kCall:
+    case AdaptationType::kStartGroup:
+      break;
   }
+  return false;
 }
 
 // Whether there is nothing left to do for it as a part of a last resort. A component that hangs may still do what
 // the last resort is to end.
 bool holds_already(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
-  switch (adaptation.type) {
-    case AdaptationType::kDeactivate:
-      return is_inactive_anyway(state) ||
-             (state.alive == true && state.lifecycle == Lifecycle::kInactive);
-    case AdaptationType::kChangeCommunication:
-      return uses_already(adaptation, knowledge);
-    default:
-      return is_met(adaptation, knowledge);
-  }
+  if (adaptation.type == AdaptationType::kDeactivate)
+    return is_inactive_anyway(state) ||
+           (state.alive == true && state.lifecycle == Lifecycle::kInactive);
+  if (adaptation.type == AdaptationType::kChangeCommunication)
+    return uses_already(adaptation, knowledge);
+  return is_met(adaptation, knowledge);
 }
 
 // Whether the adaptation at `place` is a step with nothing to do: that is so already, or it would give back what

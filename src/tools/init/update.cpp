@@ -303,9 +303,14 @@ class Updating {
       case Part::Kind::kLeftOut:
         return without_measures(block.text, seen_.robot) ==
                without_measures(part.text, seen_.robot);
-      default:
-        return true;
+      case Part::Kind::kHead:
+      case Part::Kind::kUse:
+      case Part::Kind::kLevel:
+      case Part::Kind::kComment:
+      case Part::Kind::kValues:
+        break;
     }
+    return true;
   }
 
   // For a list that a person has changed.

@@ -15,9 +15,11 @@ Value empty_value(Type type) {
       return std::int64_t{0};
     case Type::kString:
       return std::string();
-    default:
-      return 0.0;
+    case Type::kDouble:
+    case Type::kDuration:
+      break;
   }
+  return 0.0;
 }
 
 // The adaptation can make the manager ask this of its component.

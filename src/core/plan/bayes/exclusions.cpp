@@ -16,9 +16,18 @@ bool takes_down(const Adaptation& adaptation) {
     case AdaptationType::kDeactivate:
     case AdaptationType::kStop:
       return true;
-    default:
-      return false;
+    case AdaptationType::kActivate:
+    case AdaptationType::kStart:
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter:
+    case AdaptationType::kChangeCommunication:
+    case AdaptationType::kChangeMode:
+    case AdaptationType::kCall:
+    case AdaptationType::kStartGroup:
+      break;
   }
+  return false;
 }
 
 bool takes_down(const Strategy& strategy) {
