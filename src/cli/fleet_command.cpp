@@ -17,7 +17,7 @@ namespace {
 struct FleetCommand {
   std::string address;
   int keep_days = fleet::Setup().keep_days;
-  fleet::Scope scope;
+  fleet_reports::Scope scope;
   bool as_json = false;
   bool as_sql = false;
   std::string html;
@@ -47,17 +47,18 @@ int init(const FleetCommand& options) {
   return kOk;
 }
 
-int show(const fleet::Report& report, const FleetCommand& options) {
+int show(const fleet_reports::Report& report, const FleetCommand& options) {
   const double now = static_cast<double>(wall_now()) / 1e9;
   if (!options.html.empty()) {
-    const auto written = write_text(options.html, fleet::to_html(report, now));
+    const auto written = write_text(options.html, fleet_reports::to_html(report, now));
     return written ? kOk : fail(written.error());
   }
-  fmt::print("{}", options.as_json ? fleet::to_json_text(report) : fleet::to_text(report, now));
+  fmt::print("{}", options.as_json ? fleet_reports::to_json_text(report)
+                                   : fleet_reports::to_text(report, now));
   return kOk;
 }
 
-using Queries = std::vector<fleet::TableQuery> (*)(const fleet::Scope& scope);
+using Queries = std::vector<fleet_reports::TableQuery> (*)(const fleet_reports::Scope& scope);
 
 struct Kind {
   const char* name;
@@ -68,27 +69,29 @@ struct Kind {
 
 int report(const Kind& kind, const FleetCommand& options) {
   if (options.as_sql) {
-    fmt::print("{}", fleet::sql_of(kind.queries(options.scope)));
+    fmt::print("{}", fleet_reports::sql_of(kind.queries(options.scope)));
     return kOk;
   }
   auto server = connect(options);
   if (!server) return fail(server.error());
   if (const auto fits = fleet::check_schema(*server); !fits)
     return fail("the fleet's database cannot be used: " + fits.error());
-  const auto made = kind.compares ? fleet::compare(*server, options.scope)
-                                  : fleet::make_report(*server, std::string("Fleet: ") + kind.name,
-                                                       kind.queries(options.scope));
+  const auto made = kind.compares
+                        ? fleet_reports::compare(*server, options.scope)
+                        : fleet_reports::make_report(*server, std::string("Fleet: ") + kind.name,
+                                                     kind.queries(options.scope));
   if (!made) return fail(made.error());
   return show(*made, options);
 }
 
 constexpr Kind kKinds[] = {
-    {"status", "Failed and unreachable robots, and the state of the models", fleet::status_queries},
+    {"status", "Failed and unreachable robots, and the state of the models",
+     fleet_reports::status_queries},
     {"incidents", "The latest incidents, the worst rules and components, and times to repair",
-     fleet::incident_queries},
-    {"beliefs", "The outcomes of each strategy on all robots", fleet::belief_queries},
+     fleet_reports::incident_queries},
+    {"beliefs", "The outcomes of each strategy on all robots", fleet_reports::belief_queries},
     {"compare", "Robots that differ from the others, and a comparison of versions",
-     fleet::version_queries, true}};
+     fleet_reports::version_queries, true}};
 
 void add_address(CLI::App& command, FleetCommand& options) {
   command

@@ -5,7 +5,7 @@
 
 #include "knowledge/pooled_prior.h"
 
-namespace culprit::fleet {
+namespace culprit::fleet_reports {
 namespace {
 
 using Kind = Column::Kind;
@@ -272,4 +272,4 @@ std::string sql_of(const std::vector<TableQuery>& queries) {
   return text;
 }
 
-}  // namespace culprit::fleet
+}  // namespace culprit::fleet_reports

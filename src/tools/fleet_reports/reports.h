@@ -6,7 +6,7 @@
 
 #include "fleet_reports/table_report.h"
 
-namespace culprit::fleet {
+namespace culprit::fleet_reports {
 
 // The scope of a report; empty fields: no limit.
 struct Scope {
@@ -30,4 +30,4 @@ Expected<Report> compare(Postgres& server, const Scope& scope);
 // The statements as text, for other programs.
 std::string sql_of(const std::vector<TableQuery>& queries);
 
-}  // namespace culprit::fleet
+}  // namespace culprit::fleet_reports

@@ -10,8 +10,10 @@
 #include "fleet/test_postgres.h"
 #include "journal/json.h"
 
-namespace culprit::fleet {
+namespace culprit::fleet_reports {
 namespace {
+
+using namespace fleet;
 
 // Nine robots that are alike, and one that differs; the last one fails.
 struct FleetReports : testing::Test {
@@ -106,4 +108,4 @@ TEST_F(FleetReports, TheDashboardsQueriesAreTaken) {
 }
 
 }  // namespace
-}  // namespace culprit::fleet
+}  // namespace culprit::fleet_reports

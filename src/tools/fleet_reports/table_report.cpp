@@ -11,7 +11,7 @@
 #include "journal/json.h"
 #include "language/source.h"
 
-namespace culprit::fleet {
+namespace culprit::fleet_reports {
 namespace {
 
 using Kind = Column::Kind;
@@ -35,7 +35,7 @@ std::string cell_text(const Field& field, Kind kind, double now) {
   if (!field) return "-";
   switch (kind) {
     case Kind::kText:
-      return clean(*field);
+      return fleet::clean(*field);
     case Kind::kCount:
       return fmt::format("{}", integer_in(field));
     case Kind::kNumber:
@@ -47,7 +47,7 @@ std::string cell_text(const Field& field, Kind kind, double now) {
     case Kind::kTime:
       return time_text(real_in(field)) + " (" + duration_text(now - real_in(field)) + " ago)";
     case Kind::kIncident:
-      return incident_id(integer_in(field));
+      return fleet::incident_id(integer_in(field));
   }
   return "";
 }
@@ -91,7 +91,7 @@ Json cell_json(const Field& field, Kind kind) {
   if (!field) return {};
   if (kind == Kind::kText) return *field;
   if (kind == Kind::kCount) return integer_in(field);
-  if (kind == Kind::kIncident) return incident_id(integer_in(field));
+  if (kind == Kind::kIncident) return fleet::incident_id(integer_in(field));
   return real_in(field);
 }
 
@@ -174,4 +174,4 @@ std::string to_html(const Report& report, double now) {
   return html + "</body></html>\n";
 }
 
-}  // namespace culprit::fleet
+}  // namespace culprit::fleet_reports

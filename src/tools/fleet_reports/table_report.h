@@ -6,7 +6,15 @@
 
 #include "fleet/postgres.h"
 
-namespace culprit::fleet {
+namespace culprit::fleet_reports {
+
+using fleet::Field;
+using fleet::integer_in;
+using fleet::Postgres;
+using fleet::real_in;
+using fleet::Row;
+using fleet::Rows;
+using fleet::text_in;
 
 struct Column {
   enum class Kind : std::uint8_t {
@@ -50,4 +58,4 @@ std::string to_text(const Report& report, double now);
 std::string to_json_text(const Report& report);
 std::string to_html(const Report& report, double now);
 
-}  // namespace culprit::fleet
+}  // namespace culprit::fleet_reports
