@@ -155,6 +155,23 @@ TEST(Origin, AParticipantTellsOfItselfOnly) {
   EXPECT_FALSE(robot.has_lost_something());
 }
 
+// Fast DDS finds their keys where the standard has none.
+TEST(Origin, AParticipantTellsOfItselfOnlyInWhateverForm) {
+  const TestDomain domain;
+  LiveContext watcher(domain.options());
+  Robot robot(domain, watcher);
+  ASSERT_TRUE(robot.is_seen);
+  const auto stranger = Participant::create(domain.options(), [](DiscoveryEvent) {});
+  ASSERT_TRUE(stranger);
+  ASSERT_TRUE(robot.within([&] { return robot.participants().size() == 2; }));
+  const HostileProcess sends(
+      disguised_farewells(robot.camera.info.guid, (*stranger)->guid().prefix()), robot.to, 200ms);
+  Participant& participant = watcher->participant();
+  EXPECT_TRUE(robot.within(
+      [&] { return participant.origins().dropped() > 20 && participant.refused().count > 20; }));
+  EXPECT_FALSE(robot.has_lost_something());
+}
+
 TEST(Origin, FarewellsOfAStrangerRemoveANodeWhoseProcessIsNotKnown) {
   const TestDomain domain;
   LiveContext watcher(domain.options());

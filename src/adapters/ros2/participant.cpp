@@ -390,6 +390,7 @@ class DdsParticipant final : public Participant::Impl {
     reception_.origins->prove(guid_.prefix(), getpid(), {});
     if (!is_secured_) reception_.origins->begin_to_bind(guid_.prefix());
     if (!is_secured_) reception_.requests->begin();
+    if (!is_secured_) reception_.fragments->begin();
     publisher_ = participant_->create_publisher(dds::PublisherQos());
     subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
     topics_.emplace(*participant_);

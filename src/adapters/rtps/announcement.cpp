@@ -5,6 +5,7 @@
 #include <chrono>
 #include <string>
 
+#include "rtps/for_each_submessage.h"
 #include "rtps/submessage.h"
 
 namespace culprit::ros2 {
@@ -90,6 +91,8 @@ class Announced {
 struct AnnouncedList {
   ByteView bytes;
   Endianness order;
+
+  bool is_little() const { return order == Endianness::kLittle; }
 };
 
 // Calls `each` with the number and value of every parameter until it gives false. Gives whether the list
@@ -97,16 +100,9 @@ struct AnnouncedList {
 template <class Each>
 bool for_each_parameter(AnnouncedList list, Each each) {
   while (true) {
-    Announced head(list.bytes, list.order);
-    const ByteView four = head.take(4);
-    if (four.empty()) return false;
-    const bool is_big = list.order == Endianness::kBig;
-    const auto number = [&](std::size_t at) {
-      return static_cast<std::uint16_t>(four[is_big ? at : at + 1] << 8 |
-                                        four[is_big ? at + 1 : at]);
-    };
-    const std::uint16_t id = number(0);
-    const std::size_t length = number(2);
+    if (list.bytes.size() < 4) return false;
+    const std::uint16_t id = number_at(list.bytes, 0, list.is_little());
+    const std::size_t length = number_at(list.bytes, 2, list.is_little());
     if (id == kPidSentinel) return true;
     list.bytes = list.bytes.subspan(4);
     if (list.bytes.size() < length) return false;
@@ -115,10 +111,11 @@ bool for_each_parameter(AnnouncedList list, Each each) {
   }
 }
 
+// The middleware ignores the first byte (Fast DDS, ParameterList::readParameterListfromCDRMsg), and so must we.
 std::optional<AnnouncedList> announced_list(ByteView payload) {
   constexpr std::uint8_t kBigEndianList = 2;
   constexpr std::uint8_t kLittleEndianList = 3;
-  if (payload.size() < kEncapsulationSize || payload[0] != 0) return std::nullopt;
+  if (payload.size() < kEncapsulationSize) return std::nullopt;
   if (payload[1] != kBigEndianList && payload[1] != kLittleEndianList) return std::nullopt;
   return AnnouncedList{payload.subspan(kEncapsulationSize),
                        payload[1] == kBigEndianList ? Endianness::kBig : Endianness::kLittle};
@@ -172,6 +169,23 @@ bool read_parameter(EndpointInfo& info, std::uint16_t id, Announced value) {
       return value.ok();
     default:
       return true;
+  }
+}
+
+// The middleware takes the 16 bytes that follow, whatever the length says, before it finds out that a list is damaged
+// (Fast DDS, ParameterList::readInstanceHandleFromCDRMsg).
+void add_keys(AnnouncedList list, std::vector<Guid>& keys) {
+  while (list.bytes.size() >= 4) {
+    const std::uint16_t id = number_at(list.bytes, 0, list.is_little());
+    const std::size_t length = number_at(list.bytes, 2, list.is_little());
+    if (id == kPidSentinel) return;
+    list.bytes = list.bytes.subspan(4);
+    if (id == kPidParticipantGuid || id == kPidEndpointGuid || id == kPidKeyHash) {
+      Announced value(list.bytes, list.order);
+      const Guid said = value.guid();
+      if (value.ok()) keys.push_back(said);
+    }
+    list.bytes = list.bytes.subspan(std::min(list.bytes.size(), (length + 3) & ~std::size_t{3}));
   }
 }
 
@@ -236,14 +250,8 @@ std::optional<Guid> read_end(ByteView parameters, Endianness order, ByteView pay
 
 std::vector<Guid> announced_keys(ByteView parameters, Endianness order, ByteView payload) {
   std::vector<Guid> keys;
-  const auto read = [&](std::uint16_t id, Announced value) {
-    if (id != kPidParticipantGuid && id != kPidEndpointGuid && id != kPidKeyHash) return true;
-    const Guid said = value.guid();
-    if (value.ok()) keys.push_back(said);
-    return true;
-  };
-  for_each_parameter({parameters, order}, read);
-  if (const auto list = announced_list(payload)) for_each_parameter(*list, read);
+  add_keys({parameters, order}, keys);
+  if (const auto list = announced_list(payload)) add_keys(*list, keys);
   return keys;
 }
 

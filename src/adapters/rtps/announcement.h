@@ -26,8 +26,8 @@ std::optional<EndpointInfo> read_announcement(ByteView payload, EndpointRole rol
 // its key, with its encapsulation, and may be empty. Nothing: none ends, or none is named.
 std::optional<Guid> read_end(ByteView parameters, Endianness order, ByteView payload);
 
-// The participants and endpoints that are announced, or have ended: every key that the lists name.
-// `parameters` and `payload` as above. A damaged list is passed over.
+// The participants and endpoints that are announced, or have ended: every key that the middleware may find in the lists,
+// also in damaged ones. `parameters` and `payload` as above.
 std::vector<Guid> announced_keys(ByteView parameters, Endianness order, ByteView payload);
 
 // The datagram by which the participant announces that it has left, as Fast DDS writes it, with the

@@ -42,6 +42,7 @@
 #include "base/live_clock.h"
 #include "base/mutex.h"
 #include "rtps/announcement.h"
+#include "rtps/announcement_fragments.h"
 #include "rtps/claims.h"
 #include "rtps/datagram_filter.h"
 #include "rtps/datagram_sources.h"
@@ -69,6 +70,7 @@ struct Reception {
   std::shared_ptr<Origins> origins = std::make_shared<Origins>();
   std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
   std::shared_ptr<Newcomers> newcomers = std::make_shared<Newcomers>();
+  std::shared_ptr<AnnouncementFragments> fragments = std::make_shared<AnnouncementFragments>();
   std::shared_ptr<StuckRequests> requests = std::make_shared<StuckRequests>();
   std::shared_ptr<ReceiveThread> thread = std::make_shared<ReceiveThread>();
   // Where readers that have time are sent to; 0: there is no such port.
@@ -302,6 +304,8 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
             Haste haste) const {
     const UdpAddress& from = datagram.from;
     if (!counts(datagram)) return;
+    for (Bytes& whole : reception_.fragments->take(datagram.bytes, from))
+      came(receiver, {whole, from, datagram.received}, local, haste);
     if (is_for_discovery(local)) discover_again(receiver, local);
     reception_.sources->heard(datagram.bytes, from, live_now());
     const ByteView passed =

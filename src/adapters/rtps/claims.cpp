@@ -23,17 +23,6 @@ constexpr std::size_t kToParameters = 6;  // the place of that offset
 constexpr std::size_t kWriter = 12;
 constexpr std::size_t kLeast = 24;  // bytes of a sample with its header
 
-// The size of a list with its end marker, or of all bytes if it has none.
-std::size_t size_of_list(ByteView bytes, bool is_little) {
-  constexpr std::uint16_t kEnd = 1;
-  for (std::size_t at = 0; at + 4 <= bytes.size();) {
-    const std::size_t length = number_at(bytes, at + 2, is_little);
-    if (number_at(bytes, at, is_little) == kEnd) return at + 4;
-    at += 4 + ((length + 3) & ~std::size_t{3});
-  }
-  return bytes.size();
-}
-
 void add_keys(ByteView sample, const GuidPrefix& sender, std::vector<GuidPrefix>& others) {
   if (sample.size() < kLeast) return;
   const bool announces = std::ranges::any_of(kAnnouncers, [&](const Entity& each) {
@@ -46,12 +35,13 @@ void add_keys(ByteView sample, const GuidPrefix& sender, std::vector<GuidPrefix>
   ByteView rest = sample.subspan(begin);
   ByteView parameters;
   if ((sample[1] & rtps::kHasParameters) != 0) {
-    parameters = rest.first(size_of_list(rest, is_little));
+    parameters = rest.first(size_of_parameters(rest, is_little));
     rest = rest.subspan(parameters.size());
   }
   const auto order = is_little ? Endianness::kLittle : Endianness::kBig;
   for (const Guid& key : announced_keys(parameters, order, rest)) {
     const GuidPrefix owner = key.prefix();
+    if (others.size() > kMostOthers) return;  // thousands fit into a datagram
     if (owner != sender && std::ranges::find(others, owner) == others.end())
       others.push_back(owner);
   }

@@ -13,8 +13,10 @@
 
 namespace culprit::ros2 {
 
-// The participants, each once, whose keys are in the datagram's discovery data and that are not its sender. It cannot
-// see into encrypted data, nor into fragments after the first.
+// The participants, each once, whose keys are in the datagram's discovery data and that are not its sender: at most
+// kMostOthers, and one more if there are more. It cannot see into encrypted data. Announcements in fragments are put together
+// first (announcement_fragments.h).
+inline constexpr std::size_t kMostOthers = 64;
 std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram);
 
 // Whether it has more submessages than participants send: thousands of empty ones fit into a datagram, and each costs

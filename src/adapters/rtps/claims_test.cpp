@@ -83,6 +83,39 @@ TEST(Claims, AreWhatEndsAndWhatBegins) {
               ElementsAre(kThird, kOther));
 }
 
+// Fast DDS ignores the first byte, and takes the 16 bytes behind the number of a key, whatever length the list gives.
+TEST(Claims, AreReadAsTheMiddlewareReadsThem) {
+  const Guid other = guid(kOther, {0, 0, 1, 0xc1});
+  const Bytes ends = TestParameters().add(0x71, Bytes{0, 0, 0, 3}).end();
+  const auto claimed = [&](std::uint8_t first, std::uint8_t length) {
+    Bytes payload{first, 3, 0, 0, 0x50, 0, length, length == 0xff ? length : std::uint8_t{0}};
+    payload.insert(payload.end(), other.bytes.begin(), other.bytes.end());
+    payload.insert(payload.end(), {1, 0, 0, 0});
+    return others_announced(
+        TestDatagram(kSender)
+            .end_of(of_participants(), 1, ends, TestDatagram::Content::kPayload, payload)
+            .bytes());
+  };
+  EXPECT_THAT(claimed(0, 16), ElementsAre(kOther));
+  EXPECT_THAT(claimed(9, 16), ElementsAre(kOther));
+  EXPECT_THAT(claimed(0, 0), ElementsAre(kOther));
+  EXPECT_THAT(claimed(0, 4), ElementsAre(kOther));
+  EXPECT_THAT(claimed(0, 0xff), ElementsAre(kOther)) << "longer than the list";
+}
+
+TEST(Claims, OfThousandsAreCounted) {
+  TestParameters all;
+  Guid each = guid(kOther, {0, 0, 1, 0xc1});
+  for (int i = 0; i < 3000; ++i) {
+    each.bytes[4] = static_cast<std::uint8_t>(i), each.bytes[5] = static_cast<std::uint8_t>(i >> 8);
+    all.add(0x50, Bytes(each.bytes.begin(), each.bytes.end()));
+  }
+  EXPECT_EQ(
+      others_announced(TestDatagram(kSender).announcement(of_participants(), 1, all.end()).bytes())
+          .size(),
+      kMostOthers + 1);
+}
+
 TEST(Claims, OfTheSourceThatIsNamedWithinTheDatagramAreItsOwn) {
   Bytes source = {0, 0, 0, 0, 2, 3, 1, 15};
   source.insert(source.end(), kOther.bytes.begin(), kOther.bytes.end());

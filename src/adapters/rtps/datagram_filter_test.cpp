@@ -277,6 +277,24 @@ TEST_F(Filter, WritersAreKnownByTheirSource) {
   EXPECT_TRUE(passes(datagram));
 }
 
+// Fast DDS would take the first as the key of whatever it names, and would find the parameters of the second elsewhere.
+TEST_F(Filter, WhatTheMiddlewareWouldReadOtherwiseIsRefused) {
+  using Content = TestDatagram::Content;
+  const Bytes ends = TestParameters().add(0x71, Bytes{0, 0, 0, 3}).end();
+  const Bytes key(kCamera.bytes.begin(), kCamera.bytes.end());
+  EXPECT_FALSE(passes(from(kDiscovery).end_of(kDiscovery, 1, ends, Content::kKey, key)));
+  EXPECT_FALSE(passes(from(kDiscovery).end_of(kDiscovery, 1, ends, Content::kKey, {1, 15, 0, 0})));
+  Bytes list{0, 3, 0, 0};
+  const Bytes named = TestParameters().endpoint(kCamera).end();
+  list.insert(list.end(), named.begin(), named.end());
+  EXPECT_TRUE(passes(from(kDiscovery).end_of(kDiscovery, 1, ends, Content::kKey, list)));
+  constexpr std::uint16_t kNegative = 0x8000;
+  Bytes far = TestParameters().add(0x70, key).add(0x71, Bytes{0, 0, 0, 3}).end();
+  far.resize(kNegative, 0);
+  far.insert(far.end(), {1, 0, 0, 0});
+  EXPECT_FALSE(passes(from(kDiscovery).end_of(kDiscovery, 2, far, Content::kNone, {}, kNegative)));
+}
+
 // ---- which reader receives which writer
 
 TEST_F(Filter, WhatOneReaderHearsIsAddressedToIt) {

@@ -103,7 +103,9 @@ class SubmessageReader {
       sample.fragment_size = read<std::uint16_t>();
       sample.size = read<std::uint32_t>();
     }
-    is_ok_ = is_ok_ && to_parameters >= at_ - counted_from;
+    // Fast DDS reads a signed number there: beyond this, it would find other parameters than we do.
+    constexpr std::uint16_t kFarthest = 0x7fff;
+    is_ok_ = is_ok_ && to_parameters >= at_ - counted_from && to_parameters <= kFarthest;
     if (is_ok_) skip(to_parameters - (at_ - counted_from));
     const std::size_t begin = at_;
     if ((flags & rtps::kHasParameters) != 0) skip_parameters();

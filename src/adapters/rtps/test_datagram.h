@@ -46,6 +46,15 @@ class TestDatagram {
     bytes_.resize(bytes_.size() + (begin < whole ? std::min<std::size_t>(size, whole - begin) : 0));
     return end();
   }
+  // The same with the content of this sample.
+  TestDatagram& part(const Guid& writer, std::int64_t sequence, std::uint32_t number,
+                     std::uint16_t size, const Bytes& whole) {
+    begin(0x16).u16(0).u16(28).readers().entity(writer).sequence(sequence).u32(number);
+    u16(1).u16(size).u32(static_cast<std::uint32_t>(whole.size()));
+    const std::size_t first = std::size_t{number - 1} * size;
+    append(ByteView(whole).subspan(first, std::min<std::size_t>(size, whole.size() - first)));
+    return end();
+  }
   // By the participant's announcer of readers or of writers (kAnnouncesReaders, kAnnouncesWriters).
   TestDatagram& announcement(const Guid& announcer, std::int64_t sequence,
                              const Bytes& parameters) {
@@ -63,6 +72,16 @@ class TestDatagram {
     u16(0x71).u16(4);
     append(Bytes{0, 0, 0, 3});
     return u16(1).u16(0).end();
+  }
+  // The same with other inline parameters, which begin `at` bytes after the reader, and a payload; kKey: it is one.
+  enum class Content : std::uint8_t { kNone = 0, kPayload = 4, kKey = 8 };
+  TestDatagram& end_of(const Guid& announcer, std::int64_t sequence, const Bytes& parameters,
+                       Content content, const Bytes& payload, std::uint16_t at = 16) {
+    begin(0x15, static_cast<std::uint8_t>(2 | static_cast<int>(content))).u16(0).u16(at);
+    readers().entity(announcer).sequence(sequence);
+    append(parameters);
+    append(payload);
+    return end();
   }
   // Anything.
   TestDatagram& submessage(std::uint8_t kind, std::uint8_t flags, const Bytes& body) {

@@ -62,6 +62,31 @@ inline std::vector<Bytes> farewells(const Guid& participant, const std::vector<G
   return all;
 }
 
+// It has left, as `liar` announces it in its own name, each time in another form.
+inline std::vector<Bytes> disguised_farewells(const Guid& participant, const GuidPrefix& liar) {
+  using Content = TestDatagram::Content;
+  const Guid announcer = builtin_of(participant, 1, 0);
+  const Bytes key(participant.bytes.begin(), participant.bytes.end());
+  const auto list = [&](std::uint8_t first, std::uint8_t length) {
+    Bytes bytes{first, 3, 0, 0, 0x50, 0, length, 0};
+    bytes.insert(bytes.end(), key.begin(), key.end());
+    bytes.insert(bytes.end(), {1, 0, 0, 0});
+    return bytes;
+  };
+  const Bytes ends = TestParameters().add(0x71, Bytes{0, 0, 0, 3}).end();
+  constexpr std::uint16_t kNegative = 0x8000;
+  Bytes far = TestParameters().add(0x70, key).add(0x71, Bytes{0, 0, 0, 3}).end();
+  far.resize(kNegative, 0);
+  far.insert(far.end(), {1, 0, 0, 0});
+  const auto from = [&] { return TestDatagram(liar); };
+  return {
+      from().end_of(announcer, 100, ends, Content::kKey, key).bytes(),
+      from().end_of(announcer, 101, ends, Content::kPayload, list(9, 16)).bytes(),
+      from().end_of(announcer, 102, ends, Content::kPayload, list(0, 4)).bytes(),
+      from().end_of(announcer, 103, far, Content::kNone, {}, kNegative).bytes(),
+  };
+}
+
 // A participant that does not exist.
 inline Guid made_up(std::uint16_t number) {
   Guid guid;
