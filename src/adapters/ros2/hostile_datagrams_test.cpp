@@ -151,6 +151,22 @@ TEST_F(HostileDatagrams, ParticipantsThatOneSourceMakesUpComeInSlowly) {
   EXPECT_EQ(victim->refused().why, "one source introduces too many participants");
 }
 
+TEST_F(HostileDatagrams, ParticipantsThatAKnownOneMakesUpComeInSlowly) {
+  constexpr std::size_t kPrefix = 8;
+  constexpr std::size_t kNumber = 40;  // the low half of the sample's, little endian
+  for (std::uint16_t i = 0; i < 1100; ++i) {
+    Bytes datagram = announcement_of(i);
+    std::ranges::copy(robot->guid().prefix().bytes, datagram.begin() + kPrefix);
+    datagram[kNumber] = static_cast<std::uint8_t>(i + 2);
+    datagram[kNumber + 1] = static_cast<std::uint8_t>((i + 2) >> 8);
+    attacker.send(datagram);
+    if (i % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(discovers());
+  EXPECT_TRUE(speaks());
+  EXPECT_EQ(victim->refused().why, "one source introduces too many participants");
+}
+
 // A participant's own announcements arrive at its discovery port again and again: they prove that
 // the thread there works.
 TEST_F(HostileDatagrams, TheOwnAnnouncementsComeThrough) {

@@ -21,6 +21,7 @@
 // participants on one machine would have it.
 #pragma once
 
+#include <algorithm>
 #include <arpa/inet.h>
 #include <atomic>
 #include <cstring>
@@ -349,21 +350,29 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     }
     if (!reception_.origins->counts(datagram.bytes, datagram.from, now)) return false;
     if (*reception_.relays) return true;
-    if (!may_introduce(datagram, now)) return false;
-    for (const GuidPrefix& other : others_announced(datagram.bytes)) {
+    const std::vector<GuidPrefix> others = others_announced(datagram.bytes);
+    if (others.size() > kMostOthers) {
+      reception_.filter->note_refused("a datagram announces many participants");
+      return false;
+    }
+    if (!may_introduce(datagram, others, now)) return false;
+    for (const GuidPrefix& other : others) {
       const bool has_spoken = reception_.sources->may_speak_from(other, datagram.from);
       if (!reception_.origins->may_tell_of(other, datagram.from, has_spoken, now)) return false;
     }
     return true;
   }
 
-  bool may_introduce(const ReceiveThread::Datagram& datagram, Time now) const {
-    if (!is_rtps(datagram.bytes)) return true;
+  // `others`: those that it announces in its sender's name. A known participant may make them up, too.
+  bool may_introduce(const ReceiveThread::Datagram& datagram, const std::vector<GuidPrefix>& others,
+                     Time now) const {
+    if (!is_rtps(datagram.bytes) || !introduces(datagram.bytes)) return true;
     int unknown = 0;
-    for_each_speaker(datagram.bytes, [&](const GuidPrefix& each) {
+    const auto count = [&](const GuidPrefix& each) {
       unknown += reception_.filter->knows(each) || reception_.newcomers->is_self(each) ? 0 : 1;
-    });
-    if (unknown == 0 || !introduces(datagram.bytes)) return true;
+    };
+    for_each_speaker(datagram.bytes, count);
+    std::ranges::for_each(others, count);
     for (; unknown > 0; --unknown) {
       if (reception_.newcomers->admits(datagram.from, now)) continue;
       reception_.filter->note_refused("one source introduces too many participants");
