@@ -16,6 +16,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostKept = 1000;  // files: the network decides how many types there are
 constexpr std::size_t kMostTold = 1000;
+// As text: the longest of one type, and of all that nodes described.
+constexpr std::size_t kLongestDescription = std::size_t{256} << 10;
+constexpr std::size_t kLongestTold = std::size_t{8} << 20;
 
 bool is_what_it_says(MessageLibrary& library, const TypeFinder::Offer& offer) {
   const bool is_known_by_request = offer.hash.empty() && !offer.request_hash.empty();
@@ -47,14 +50,13 @@ std::optional<MessageLibrary> kept(const fs::path& folder, const TypeFinder::Off
 }
 
 // Where that fails the node is asked again the next time.
-void keep(const fs::path& folder, const TypeFinder::Offer& offer,
-          const MessageDefinitions& definitions) {
+void keep(const fs::path& folder, const TypeFinder::Offer& offer, const std::string& text) {
   std::error_code error;
   if (folder.empty()) return;
   fs::create_directories(folder, error);
   fs::directory_iterator files(folder, error);
   if (error || static_cast<std::size_t>(std::distance(files, {})) >= kMostKept) return;
-  (void)write_text(folder / offer.hash, to_text(offer.type, definitions));
+  (void)write_text(folder / offer.hash, text);
 }
 
 Error unknown(const TypeFinder::Offer& offer, const std::string& why) {
@@ -129,10 +131,18 @@ void TypeFinder::answered(const Offer& offer, const GetTypeDescription::Answer& 
   const auto definitions = to_definitions(answer.response->type_description);
   MessageLibrary library;
   if (definitions) library.define(*definitions);
-  if (!definitions || !is_what_it_says(library, offer))
+  // The hash may fit without the type itself: a library makes those of actions and services.
+  if (!definitions || !definitions->contains(offer.type) || !is_what_it_says(library, offer))
     return tell(unknown(offer, ", and its node's description differs from the published type"));
-  keep(options_.kept_types, offer, *definitions);
-  if (told_.size() >= kMostTold) told_.clear();
+  const std::string text = to_text(offer.type, *definitions);
+  if (text.size() > kLongestDescription)
+    return tell(unknown(offer, ", and its node's description is too long"));
+  keep(options_.kept_types, offer, text);
+  if (told_.size() >= kMostTold || told_bytes_ + text.size() > kLongestTold) {
+    told_.clear();
+    told_bytes_ = 0;
+  }
+  told_bytes_ += text.size();
   tell(&told_.insert_or_assign(offer.hash, std::move(library)).first->second);
 }
 

@@ -11,6 +11,7 @@
 // compared with that of the request, and the node cannot be asked.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -72,6 +73,7 @@ class TypeFinder {
   const Options options_;
   MessageLibrary library_;                      // of our files
   std::map<std::string, MessageLibrary> told_;  // by nodes, by hash
+  std::size_t told_bytes_ = 0;                  // of their texts
   std::map<std::string, Question> questions_;   // by node and hash
 };
 

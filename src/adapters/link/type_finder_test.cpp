@@ -224,6 +224,38 @@ TEST(TypeFinder, BelievesNobodyWhoseWordsDoNotFitTheHash) {
               HasSubstr("none that can be checked"));
 }
 
+// The parts of an action are enough to make the type of its feedback, and so to know its hash.
+TEST(TypeFinder, TakesNoDescriptionThatLacksTheType) {
+  const TestDomain domain;
+  const test::TestFolder kept;
+  constexpr const char* kPart = "my_msgs/action/Go_Feedback";
+  constexpr const char* kWhole = "my_msgs/action/Go_FeedbackMessage";
+  const MessageDefinitions told = {
+      {kPart, {kPart, {{.name = "left", .element = Primitive::kFloat64}}}}};
+  MessageLibrary library;
+  library.define(told);
+  const std::string hash = *library.hash_of(kWhole);
+  const TellingNode driver(domain, told, kPart);
+  Finding finding(domain, {{}, kept.path() / "types"});
+  EXPECT_THAT(finding.find({"/driver", kWhole, hash, 0}),
+              HasSubstr("its node's description differs from the published type"));
+}
+
+TEST(TypeFinder, TakesNoDescriptionWithoutAnEnd) {
+  const TestDomain domain;
+  const test::TestFolder kept;
+  MessageDefinitions told = battery();
+  const std::string name(200, 'c');
+  for (int i = 0; i < 1500; ++i)
+    told.at(kType).fields.push_back(
+        {.name = name + std::to_string(i), .element = Primitive::kFloat64});
+  const TellingNode driver(domain, told);
+  Finding finding(domain, {{}, kept.path() / "types"});
+  EXPECT_THAT(finding.find({"/driver", kType, type_hash(kType, told), 0}),
+              HasSubstr("its node's description is too long"));
+  EXPECT_FALSE(fs::exists(kept.path() / "types"));
+}
+
 TEST(TypeFinder, TakesTheFilesOfTheServersProcessForAService) {
   const TestDomain domain;
   const test::TestFolder ours;
