@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <climits>
 #include <exception>
 #include <filesystem>
 #include <netdb.h>
+#include <optional>
 #include <poll.h>
 #include <string>
 #include <string_view>
@@ -125,6 +127,9 @@ class Connection final : public httplib::Stream {
   }
   socket_t socket() const override { return socket_; }
 
+  // Bytes of this request's body.
+  std::size_t body_read() const { return body_; }
+
  private:
   static constexpr std::string_view kEndOfHeader = "\r\n\r\n";
 
@@ -182,6 +187,25 @@ void hide_what_it_takes(httplib::Request& request) {
   if (gzip) request.set_header(kTakesGzip, "yes");
 }
 
+// httplib would put all of them into its memory, and a header has room for thousands of times the whole content.
+void pass_over_several_ranges(httplib::Request& request) {
+  if (request.ranges.size() <= 1) return;
+  request.ranges.clear();
+  request.headers.erase("Range");
+}
+
+// Bytes; nothing: its header does not say, or says several.
+std::optional<std::size_t> size_of_body(const httplib::Request& request) {
+  if (request.has_header("Transfer-Encoding")) return std::nullopt;
+  const std::size_t count = request.get_header_value_count("Content-Length");
+  if (count == 0) return std::size_t{0};
+  const std::string text = request.get_header_value("Content-Length");
+  std::size_t size = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), size);
+  if (count > 1 || error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return size;
+}
+
 // The kernel resets a connection that is closed with unread bytes; its client would see an error of the network.
 void close_cleanly(int socket) {
   constexpr int kMostPieces = 16;
@@ -221,8 +245,7 @@ bool BudgetedServer::process_and_close_socket(socket_t socket) {
   } catch (const std::exception&) {
     is_well = false;
   }
-  shutdown(socket, SHUT_RDWR);
-  close(socket);
+  close_cleanly(socket);
   return is_well;
 }
 
@@ -239,8 +262,15 @@ bool BudgetedServer::serve(socket_t socket) {
   for (int left = is_well ? budget_.requests : 0; left > 0 && svr_sock_ != INVALID_SOCKET; --left) {
     if (!connection.begins_request()) break;
     bool is_closed = false;
-    is_well = process_request(connection, left == 1, is_closed, hide_what_it_takes);
-    if (!is_well || is_closed) break;
+    std::optional<std::size_t> body;
+    is_well = process_request(connection, left == 1, is_closed, [&](httplib::Request& request) {
+      hide_what_it_takes(request);
+      pass_over_several_ranges(request);
+      body = size_of_body(request);
+    });
+    // The rest of a body would be read as the next request. A page of another site writes such bodies, and could choose
+    // every header of that request.
+    if (!is_well || is_closed || body != connection.body_read()) break;
   }
   return is_well;
 }

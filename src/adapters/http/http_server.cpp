@@ -188,6 +188,8 @@ class HttpServer::Http {
     server_.set_pre_routing_handler([this](const httplib::Request& q, httplib::Response& r) {
       const auto refusal = refusal_of(q);
       if (!refusal) return httplib::Server::HandlerResponse::Unhandled;
+      // Its body is not read, and so nothing more on this connection.
+      if (has_body(q) || q.has_header("Transfer-Encoding")) r.set_header("Connection", "close");
       give(q, r, *refusal);
       return httplib::Server::HandlerResponse::Handled;
     });

@@ -326,6 +326,37 @@ TEST_F(WebServer, RefusesPagesOfOtherSites) {
   EXPECT_EQ(client().Options("/api/echo")->status, 401);
 }
 
+// A browser sends such a body for any page, and the headers in it would be that page's own.
+TEST_F(WebServer, TakesNoBodyForARequest) {
+  const std::string inner = "GET /api/about HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  const std::string length = "Content-Length: " + std::to_string(inner.size()) + "\r\n";
+  const std::string host = "Host: 127.0.0.1\r\n";
+  const std::string foreign = host + "Origin: http://evil\r\nContent-Type: text/plain\r\n";
+  for (const std::string& head :
+       {"POST /api/echo HTTP/1.1\r\n" + foreign + length,
+        "GET /api/about HTTP/1.1\r\n" + host + "Content-Type: application/json\r\n" + length,
+        "POST /api/echo HTTP/1.1\r\n" + host + "Transfer-Encoding: chunked\r\n",
+        "GET /api/about HTTP/1.1\r\n" + host + "Content-Length: 0\r\n" + length}) {
+    Raw raw(server->port());
+    raw.send(head + "\r\n" + inner);
+    const std::string answer = raw.receive();
+    const std::size_t first = answer.find("HTTP/1.1 ");
+    EXPECT_EQ(first, 0u) << answer;
+    EXPECT_EQ(answer.find("HTTP/1.1 ", first + 1), std::string::npos) << answer;
+  }
+}
+
+// Each range would be a copy of it in memory.
+TEST_F(WebServer, GivesTheWholeWhereSeveralPartsAreAskedFor) {
+  const auto whole = client().Get("/", {{"Range", "bytes=0-,0-"}, {"Accept-Encoding", "identity"}});
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->status, 200);
+  EXPECT_EQ(whole->body, kPage);
+  const auto part = client().Get("/", {{"Range", "bytes=0-3"}, {"Accept-Encoding", "identity"}});
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->body, kPage.substr(0, 4));
+}
+
 TEST_F(WebServer, RefusesNamesThatWereReboundToIt) {
   EXPECT_EQ(client().Get("/api/echo", {{"Host", "evil.example"}})->status, 403);
   EXPECT_EQ(client().Get("/", {{"Host", "evil.example:80"}})->status, 403);
