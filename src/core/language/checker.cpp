@@ -24,6 +24,8 @@ namespace culprit {
 namespace {
 
 constexpr std::int64_t kMaxCount = 1000;
+// In shorter ones a state of an hour would take hours to compute.
+constexpr Duration kMinCycle = std::chrono::milliseconds(1);
 constexpr Duration kMaxCycle = std::chrono::hours(1);
 constexpr int kDefaultRounds = 3;  // each strategy is tried this often before the rule is exhausted
 
@@ -79,6 +81,9 @@ class Checker {
     if (file_.cycle) {
       if (file_.cycle->length > kMaxCycle) {
         report(Code::kPolicyRange, file_.cycle->span, "a cycle is at most an hour",
+               "the paper's is 200ms");
+      } else if (file_.cycle->length < kMinCycle) {
+        report(Code::kPolicyRange, file_.cycle->span, "a cycle is at least 1 ms",
                "the paper's is 200ms");
       } else {
         rules_.cycle = file_.cycle->length;

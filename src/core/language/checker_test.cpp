@@ -81,6 +81,13 @@ TEST(Checker, ReadsThePapersRuleAsPrinted) {
   EXPECT_EQ(rules.heaviest, Cycles{5});
 }
 
+TEST(Checker, TakesCyclesFromAMillisecondToAnHour) {
+  const std::vector<std::string> refused = {"R033"};
+  EXPECT_EQ(codes_of("CYCLE 999us\n"), refused);
+  EXPECT_EQ(codes_of("CYCLE 1ms\n"), codes_of("CYCLE 200ms\n"));
+  EXPECT_EQ(codes_of("CYCLE 61min\n"), refused);
+}
+
 // The paper's figure "A generic rule in the syntax of our DSL": understood line by line, and each
 // line is said to be a form that is to be filled in.
 TEST(Checker, TakesThePapersGenericRuleForATemplate) {

@@ -8,6 +8,7 @@
 // the other way.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -15,10 +16,10 @@
 
 namespace culprit::plan {
 
-// @pre |number| < 2^30
+// Beyond 2^30 all numbers are the same: windows of a day in cycles of a millisecond cost as much.
 inline std::int64_t parts(double number) {
-  CULPRIT_ASSERT(std::abs(number) < 0x1p30);
-  return std::llround(number * 0x1p30);
+  CULPRIT_ASSERT(!std::isnan(number));
+  return std::llround(std::clamp(number, -0x1p30, 0x1p30) * 0x1p30);
 }
 
 }  // namespace culprit::plan

@@ -15,6 +15,12 @@ TEST(Parts, OfSumsOfTheSameNumbersAreTheSame) {
   EXPECT_LT(parts(0.3), parts(0.300001));
 }
 
+TEST(Parts, HaveABound) {
+  EXPECT_EQ(parts(1e300), parts(0x1p30));
+  EXPECT_EQ(parts(-1e300), -parts(0x1p30));
+  EXPECT_LT(parts(0x1p29), parts(0x1p30));
+}
+
 // Both cost 0.4333...: 80 % in 7 cycles, and 70 % in 4, of 30 at most.
 Scene equal_costs(const std::string& sooner, const std::string& likelier) {
   Scene scene("COMPONENT a NODE /a LAUNCH \"a\"\nRULE A\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY " +
