@@ -3,6 +3,7 @@
 #include "bag/bag_file.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -238,6 +239,21 @@ TEST_F(BagTest, AViewInPlaceOfMessagesIsRefused) {
   EXPECT_THAT(opened.error(), HasSubstr("it is no bag"));
 }
 
+// Each row would take a gigabyte.
+TEST_F(BagTest, AComputedColumnIsRefused) {
+  auto database =
+      value_of(journal::Database::open(folder_ / "a.db3", journal::Database::Mode::kWrite));
+  ASSERT_TRUE(database.run(
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format "
+      "TEXT, "
+      "offered_qos_profiles TEXT);"
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, "
+      "data BLOB AS (zeroblob(999999000)));"));
+  const auto opened = BagFile::open(folder_ / "a.db3");
+  ASSERT_FALSE(opened);
+  EXPECT_THAT(opened.error(), HasSubstr("it has computed columns"));
+}
+
 std::vector<double> times_of(const fs::path& path) {
   std::vector<double> times;
   BagFile bag = value_of(BagFile::open(path));
@@ -344,6 +360,20 @@ TEST_F(BagTest, MetadataCountsWhatIsMissing) {
   test::write_metadata(folder_, {"a_0.db3"}, 310);
   const Read all = read(folder_);
   EXPECT_THAT(all.losses, ElementsAre(HasSubstr("310 messages, of which 10 are missing")));
+}
+
+// The parser would take gigabytes for it.
+TEST_F(BagTest, MetadataOfAMillionPiecesIsPassedOver) {
+  test::write_db3(folder_ / "a_0.db3", test::regular_recording());
+  test::write_metadata(folder_, {"a_0.db3"}, 310);
+  std::ofstream more(folder_ / "metadata.yaml", std::ios::app);
+  more << "more: [a";
+  for (int i = 0; i < 1'000'000; ++i) more << ",a";
+  more << "]\n";
+  more.close();
+  const Read all = read(folder_);
+  EXPECT_EQ(all.messages.size(), 300u);
+  EXPECT_THAT(all.losses, IsEmpty()) << "it counts 310";
 }
 
 TEST_F(BagTest, PartsThatWereRenamedAreRead) {
