@@ -334,23 +334,23 @@ std::string to_string(const Identity& identity) {
 }
 
 std::vector<Relative> descendants_of(int pid) {
-  std::vector<std::pair<int, int>> parents;  // child, parent
+  std::vector<std::pair<int, ProcessStat>> all;
   for (const int each : all_processes()) {
     const ProcessStat family = family_of(each);
-    if (family.state != 'Z' && family.state != 'X') parents.emplace_back(each, family.parent);
+    if (family.state != 'Z' && family.state != 'X') all.emplace_back(each, family);
   }
   std::vector<Relative> found;
   std::vector<int> open = {pid};
   // PIDs are reused while they are read: no more are found than there are.
-  while (!open.empty() && found.size() <= parents.size()) {
+  while (!open.empty() && found.size() <= all.size()) {
     const int parent = open.back();
     open.pop_back();
-    for (const auto& [child, its_parent] : parents) {
-      if (its_parent != parent) continue;
+    for (const auto& [child, family] : all) {
+      if (family.parent != parent) continue;
       std::ifstream file("/proc/" + std::to_string(child) + "/comm");
       std::string command;
       std::getline(file, command);
-      found.push_back({child, std::move(command)});
+      found.push_back({child, std::move(command), family.start_ticks});
       open.push_back(child);
     }
   }

@@ -1,6 +1,7 @@
 // Reads the kernel's data about processes from /proc.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -99,7 +100,8 @@ std::string container_of(int pid);
 
 struct Relative {
   int pid = 0;
-  std::string command;  // as the kernel shortens it
+  std::string command;           // as the kernel shortens it
+  std::int64_t start_ticks = 0;  // with the PID, which process it was
 };
 // Those that `pid` started, and what those started.
 std::vector<Relative> descendants_of(int pid);

@@ -33,7 +33,7 @@ std::vector<FileDescriptor> signal_descendants(int pid, const std::string& varia
   std::vector<FileDescriptor> tree;
   const std::vector<int> group = members_of_group(pid);
   for (const Relative& each : descendants_of(pid)) {
-    FileDescriptor held(static_cast<int>(syscall(SYS_pidfd_open, each.pid, 0)));
+    FileDescriptor held = hold(each.pid, each.start_ticks);
     if (!held || is_anothers(each.pid, variable)) continue;
     if (std::ranges::find(group, each.pid) == group.end()) send_signal(held, signal);
     tree.push_back(std::move(held));
