@@ -3,33 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <zlib.h>
 
-#include "bag/mcap_fields.h"
+#include "mcap/fields.h"
+#include "mcap/record.h"
 
 namespace culprit::bag {
 namespace {
 
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-constexpr std::size_t kHeadSize = 9;  // of each record: its code, and the size of what follows
 constexpr std::uint64_t kBareBlock = std::uint64_t{1} << 20;  // bytes of messages outside of chunks
 constexpr int kOrdinalBits = 32;  // of a message in its block; the block's number is above them
-
-enum Code : std::uint8_t {
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kMessageIndex = 0x07,
-  kStatistics = 0x0b,
-  kDataEnd = 0x0f
-};
-
-std::uint32_t checksum_of(std::string_view bytes, std::uint32_t before = 0) {
-  return static_cast<std::uint32_t>(
-      crc32_z(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
-}
 
 std::int64_t ordinal_of(std::size_t block, std::size_t message = 0) {
   return static_cast<std::int64_t>((std::uint64_t{block} << kOrdinalBits) + message);
@@ -58,9 +40,9 @@ Expected<std::unique_ptr<Storage>> McapFile::open(const std::filesystem::path& p
 }
 
 bool McapFile::begin() {
-  std::array<char, kMagic.size()> magic{};
+  std::array<char, mcap::kMagic.size()> magic{};
   return source_.read(magic.data(), magic.size()) == magic.size() &&
-         std::string_view(magic.data(), magic.size()) == kMagic;
+         std::string_view(magic.data(), magic.size()) == mcap::kMagic;
 }
 
 void McapFile::survey(PieceFinder& finder) {
@@ -78,7 +60,7 @@ void McapFile::find_blocks() {
   while (true) {
     RecordHead head;
     head.place = source_.position();
-    std::array<char, kHeadSize> bytes{};
+    std::array<char, mcap::kHeadSize> bytes{};
     if (source_.read(bytes.data(), bytes.size()) < bytes.size()) {
       if (!has_data_end_)
         lose_rest(head, source_.trouble().empty() ? "the file ends there, before it was finished"
@@ -86,8 +68,8 @@ void McapFile::find_blocks() {
       return;
     }
     head.code = static_cast<std::uint8_t>(bytes[0]);
-    head.size = McapFields(std::string_view(bytes.data() + 1, 8)).u64();
-    if (head.code == kFooter) return;
+    head.size = mcap::Fields(std::string_view(bytes.data() + 1, 8)).u64();
+    if (head.code == mcap::kFooter) return;
     if (head.code == 0) return lose_rest(head, "no record begins there");
     if (take_in_record(head)) continue;
     if (!has_data_end_)
@@ -99,36 +81,36 @@ void McapFile::find_blocks() {
 
 // False: the file ends within it.
 bool McapFile::take_in_record(const RecordHead& head) {
-  const std::uint64_t end = head.place + kHeadSize + head.size;
+  const std::uint64_t end = head.place + mcap::kHeadSize + head.size;
   if (end < head.place) return false;
   // Behind the end of the data are copies, for those that read by the index.
-  if (!has_data_end_ && head.code == kChunk) return take_in_chunk(head);
-  if (!has_data_end_ && head.code == kMessage) return take_in_bare(head);
-  if (head.code == kMessageIndex && !blocks_.empty() && blocks_.back().is_chunk) {
+  if (!has_data_end_ && head.code == mcap::kChunk) return take_in_chunk(head);
+  if (!has_data_end_ && head.code == mcap::kMessage) return take_in_bare(head);
+  if (head.code == mcap::kMessageIndex && !blocks_.empty() && blocks_.back().is_chunk) {
     constexpr std::uint64_t kBefore = 6;  // bytes: a channel, and how many bytes follow
     constexpr std::uint64_t kEntry = 16;
     if (head.size > kBefore) blocks_.back().messages += (head.size - kBefore) / kEntry;
     return source_.move_to(end);
   }
-  if (head.code != kSchema && head.code != kChannel && head.code != kStatistics &&
-      head.code != kDataEnd)
+  if (head.code != mcap::kSchema && head.code != mcap::kChannel && head.code != mcap::kStatistics &&
+      head.code != mcap::kDataEnd)
     return source_.move_to(end);
   if (head.size > most_) return source_.move_to(end);
   if (!take(body_, head.size)) return false;
-  if (head.code == kSchema) read_schema(body_);
-  if (head.code == kChannel) read_channel(body_);
-  if (head.code == kStatistics) expected_count_ = McapFields(body_).u64();
-  if (head.code == kDataEnd) check_bytes(head);
+  if (head.code == mcap::kSchema) read_schema(body_);
+  if (head.code == mcap::kChannel) read_channel(body_);
+  if (head.code == mcap::kStatistics) expected_count_ = mcap::Fields(body_).u64();
+  if (head.code == mcap::kDataEnd) check_bytes(head);
   return source_.move_to(end);
 }
 
 bool McapFile::take_in_chunk(const RecordHead& head) {
   is_bare_open_ = false;
-  Block block{head.place + kHeadSize, head.size, head.place, true};
+  Block block{head.place + mcap::kHeadSize, head.size, head.place, true};
   std::array<char, 16> times{};
   if (head.size >= times.size()) {
     if (source_.read(times.data(), times.size()) < times.size()) return false;
-    McapFields fields(std::string_view(times.data(), times.size()));
+    mcap::Fields fields(std::string_view(times.data(), times.size()));
     block.first = static_cast<std::int64_t>(fields.u64());
     block.last = static_cast<std::int64_t>(fields.u64());
   }
@@ -138,7 +120,7 @@ bool McapFile::take_in_chunk(const RecordHead& head) {
 }
 
 bool McapFile::take_in_bare(const RecordHead& head) {
-  const std::uint64_t end = head.place + kHeadSize + head.size;
+  const std::uint64_t end = head.place + mcap::kHeadSize + head.size;
   if (!source_.move_to(end)) return false;
   const std::uint64_t most = std::min<std::uint64_t>(kBareBlock, most_);
   if (is_bare_open_ && end - blocks_.back().place <= most) {
@@ -153,7 +135,7 @@ bool McapFile::take_in_bare(const RecordHead& head) {
 // Compares the bytes before this record with the recorder's checksum.
 void McapFile::check_bytes(const RecordHead& head) {
   has_data_end_ = true;
-  const std::uint32_t expected = McapFields(body_).u32();
+  const std::uint32_t expected = mcap::Fields(body_).u32();
   if (expected == 0) return;
   auto bytes = ByteSource::open(path_);
   if (!bytes) return;
@@ -162,7 +144,7 @@ void McapFile::check_bytes(const RecordHead& head) {
   for (std::uint64_t left = head.place; left > 0;) {
     const std::size_t got = bytes->read(part.data(), std::min<std::uint64_t>(left, part.size()));
     if (got == 0) return;
-    checksum = checksum_of({part.data(), got}, checksum);
+    checksum = mcap::checksum_of({part.data(), got}, checksum);
     left -= got;
   }
   if (checksum != expected)
@@ -298,32 +280,28 @@ bool McapFile::decompress_chunk(const Block& block, std::string& into, Telling t
     return false;
   };
   const bool is_whole = take(body_, block.size);
-  McapFields fields(body_);
-  fields.bytes(16);  // the times of its first and last message
-  const std::uint64_t size = fields.u64();
-  const std::uint32_t checksum = fields.u32();
-  const std::string_view name = fields.text();
-  const std::uint64_t compressed_size = fields.u64();
+  mcap::Fields fields(body_);
+  const auto said = fields.read<mcap::Chunk>();
   if (!fields.is_good()) return is_whole && fail("is damaged");
-  const std::string_view compressed = fields.rest().substr(0, compressed_size);
+  const std::string_view compressed = fields.rest().substr(0, said.compressed_size);
   Compression compression = Compression::kNone;
-  if (name == "zstd") {
+  if (said.compression == "zstd") {
     compression = Compression::kZstd;
-  } else if (name == "lz4") {
+  } else if (said.compression == "lz4") {
     compression = Compression::kLz4;
-  } else if (!name.empty()) {
+  } else if (!said.compression.empty()) {
     return fail("is compressed with something else than zstd or lz4");
   }
-  if (size > most_)
-    return fail("would take " + std::to_string(size) + " bytes of memory, more than the " +
+  if (said.size > most_)
+    return fail("would take " + std::to_string(said.size) + " bytes of memory, more than the " +
                 std::to_string(most_) + " that are spent");
-  const Decompressed result = decompress_(compression, compressed, size, into);
+  const Decompressed result = decompress_(compression, compressed, said.size, into);
   if (result == Decompressed::kTooLong) return fail("holds more than it says");
-  const bool is_all = into.size() == size;
-  if (checksum != 0 && is_all && checksum != checksum_of(into))
+  const bool is_all = into.size() == said.size;
+  if (said.checksum != 0 && is_all && said.checksum != mcap::checksum_of(into))
     return fail("is damaged: its checksum is wrong");
   // Compressed data may be followed by bytes that mean nothing: if all is there, it is.
-  if (result == Decompressed::kDamaged && !(is_all && checksum != 0))
+  if (result == Decompressed::kDamaged && !(is_all && said.checksum != 0))
     return fail("is damaged: it cannot be decompressed");
   if (is_whole && !is_all) return fail("holds less than it says");
   return true;
@@ -331,7 +309,7 @@ bool McapFile::decompress_chunk(const Block& block, std::string& into, Telling t
 
 // A chunk at which the file was cut off gives the records that are whole.
 void McapFile::read_records(std::size_t block, OpenBlock& opened, Telling telling) {
-  McapFields fields(opened.bytes);
+  mcap::Fields fields(opened.bytes);
   std::size_t message = 0;
   while (!fields.rest().empty()) {
     const auto code = static_cast<std::uint8_t>(fields.bytes(1)[0]);
@@ -341,38 +319,34 @@ void McapFile::read_records(std::size_t block, OpenBlock& opened, Telling tellin
         lose(blocks_[block], "is damaged: one of its records is longer than the chunk");
       return;
     }
-    if (code == kSchema) read_schema(body);
-    if (code == kChannel) read_channel(body);
-    if (code == kMessage) read_message(body, ordinal_of(block, message++), opened, telling);
+    if (code == mcap::kSchema) read_schema(body);
+    if (code == mcap::kChannel) read_channel(body);
+    if (code == mcap::kMessage) read_message(body, ordinal_of(block, message++), opened, telling);
   }
 }
 
 void McapFile::read_schema(std::string_view body) {
-  McapFields fields(body);
-  const std::uint16_t id = fields.u16();
-  const std::string_view type = fields.text();
-  const std::string_view encoding = fields.text();
-  const std::string_view text = fields.text();
+  mcap::Fields fields(body);
+  const auto schema = fields.read<mcap::Schema>();
   constexpr std::size_t kLongestName = 1024;
-  if (!fields.is_good() || id == 0 || type.size() > kLongestName) return;
+  if (!fields.is_good() || schema.id == 0 || schema.name.size() > kLongestName) return;
   const bool is_new =
-      types_.try_emplace(id, type).second;  // Others of this number must be the same.
-  if (is_new && encoding == "ros2msg") contents_.define(type, text);
+      types_.try_emplace(schema.id, schema.name).second;  // Others of this number must be the same.
+  if (is_new && schema.encoding == "ros2msg") contents_.define(schema.name, schema.text);
 }
 
 void McapFile::read_channel(std::string_view body) {
-  McapFields fields(body);
-  const std::uint16_t id = fields.u16();
-  const auto type = types_.find(fields.u16());
-  const std::string_view topic = fields.text();
-  const std::string_view encoding = fields.text();
+  mcap::Fields fields(body);
+  const auto read = fields.read<mcap::Channel>();
   constexpr std::size_t kLongestName = 1024;
-  if (!fields.is_good() || topic.size() > kLongestName || encoding.size() > kLongestName) return;
-  const auto [channel, is_new] = channels_.try_emplace(id);
+  if (!fields.is_good() || read.topic.size() > kLongestName || read.encoding.size() > kLongestName)
+    return;
+  const auto [channel, is_new] = channels_.try_emplace(read.id);
   if (!is_new) return;  // Others of this number must be the same.
-  BagTopic known{std::string(topic), type == types_.end() ? std::string() : type->second,
-                 std::string(encoding)};
-  McapFields metadata(fields.bytes(fields.u32()));
+  const auto type = types_.find(read.schema);
+  BagTopic known{std::string(read.topic), type == types_.end() ? std::string() : type->second,
+                 std::string(read.encoding)};
+  mcap::Fields metadata(fields.text());
   while (!metadata.rest().empty() && metadata.is_good()) {
     const std::string_view key = metadata.text();
     const std::string_view value = metadata.text();
@@ -383,11 +357,10 @@ void McapFile::read_channel(std::string_view body) {
 
 void McapFile::read_message(std::string_view body, std::int64_t ordinal, OpenBlock& opened,
                             Telling telling) {
-  McapFields fields(body);
-  const auto channel = channels_.find(fields.u16());
-  fields.u32();  // its number in the channel
-  const auto at = static_cast<std::int64_t>(fields.u64());
-  fields.u64();  // when it was published, by the clock of whoever did
+  mcap::Fields fields(body);
+  const auto read = fields.read<mcap::Message>();
+  const auto channel = channels_.find(read.channel);
+  const auto at = static_cast<std::int64_t>(read.logged);
   const bool is_told = telling == Telling::kLosses;
   if (is_told) ++message_count_;
   if (!fields.is_good()) {

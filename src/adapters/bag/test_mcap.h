@@ -1,4 +1,5 @@
-// For tests: writes MCAP as a recorder does (mcap.dev/spec), and as none should.
+// For tests: writes MCAP as a recorder does (mcap.dev/spec), and as none should. Its codes and fields
+// are its own: a wrong one in mcap/record.h would agree with itself.
 #pragma once
 
 #include <algorithm>
