@@ -280,11 +280,6 @@ void Link::on_change(const GraphChange& change) {
     on_endpoint(endpoint->node, endpoint->endpoint);
   } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
     if (is_service(gone->kind) && is_for_management(gone->name)) return;
-    if (const auto known = publishers_.find(gone->name);
-        gone->kind == EndpointKind::kPublisher && known != publishers_.end()) {
-      const auto one = known->second.find(gone->node);
-      if (one != known->second.end()) known->second.erase(one);
-    }
     inbox_.put(EndpointVanished{gone->node, gone->kind, gone->name});
   } else if (const auto* namesakes = std::get_if<NodeNamesakes>(&change)) {
     // Before anybody acts on it. Rules may have nothing to complain of, or complain late: this is
@@ -342,7 +337,6 @@ void Link::on_joined(const GraphNode& node) {
   const std::string host = node.pid == 0 ? printable(node.host) : "";
   hosts_->node_joined(node.name, host);
   inbox_.put(NodeAppeared{node.name, node.pid});
-  nodes_[node.name] = node;
   diagnostics_watch_->node_joined(node.name);
   if (node.name == node_->name().full()) namesake_.joined(node, live_now());
   for (auto& [manager, systems] : systems_) std::erase(systems, node.name);
@@ -363,9 +357,7 @@ void Link::on_joined(const GraphNode& node) {
 void Link::on_left(const std::string& node, bool was_lost) {
   hosts_->node_left(node);
   other_nodes_->left(node);
-  for (auto& [topic, nodes] : publishers_) nodes.erase(node);
   probed_.erase(node);
-  nodes_.erase(node);
   diagnostics_watch_->node_left(node);
   std::erase_if(mode_managers_, [&](const auto& each) { return each.second == node; });
   if (node == node_->name().full()) namesake_.left();
@@ -403,12 +395,13 @@ void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
   const auto component = binding_.bind(system);
   if (system == manager || !component || rules_[*component].node != system) return;
   if (!may_tell_modes(manager, system)) return;
-  if (!nodes_.contains(system)) {
+  const Graph& graph = context_->graph();
+  if (!graph.node(system)) {
     systems_[manager].push_back(system);
-    inbox_.put(NodeAppeared{system, pid_of(manager)});
+    inbox_.put(NodeAppeared{system, graph.process_of(manager)});
   }
   ComponentLink* link = make_link(*component, system);
-  link->modes_come_from(nodes_[manager].participant);
+  link->modes_come_from(participant_of(manager));
   link->service_seen(service);
 }
 
@@ -416,7 +409,8 @@ void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
 bool Link::may_tell_modes(const std::string& manager, const std::string& system) {
   const auto [known, is_new] = mode_managers_.try_emplace(system, manager);
   if (is_new || known->second == manager) return true;
-  const bool is_better = pid_of(manager) != 0 && pid_of(known->second) == 0;
+  const Graph& graph = context_->graph();
+  const bool is_better = graph.process_of(manager) != 0 && graph.process_of(known->second) == 0;
   constexpr std::size_t kMost = 100;
   if (told_of_.size() < kMost && told_of_.emplace(system, manager).second)
     inbox_.put(LinkTrouble{"the modes of " + system + " are offered by " + known->second +
@@ -431,7 +425,7 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
     const auto component = binding_.bind(node);
     const bool is_main = component && !other_nodes_->has(*component, node);
     if (is_main && endpoint.name == node + "/change_mode")
-      make_link(*component, node)->modes_come_from(nodes_[node].participant);
+      make_link(*component, node)->modes_come_from(participant_of(node));
     if (is_main) make_link(*component, node)->service_seen(endpoint);
     // A secured domain need not allow that question.
     const bool is_to_be_asked = is_main && !options_.use_sim_time &&
@@ -448,10 +442,7 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   }
   if (endpoint.kind == EndpointKind::kPublisher) {
     const auto watch = watches_.find(endpoint.name);
-    if (watch != watches_.end()) {
-      publishers_[endpoint.name].insert(node);
-      find_type(node, endpoint, *watch->second);
-    }
+    if (watch != watches_.end()) find_type(node, endpoint, *watch->second);
   }
   if (is_service(endpoint.kind) && is_for_management(endpoint.name)) return;
   inbox_.put(EndpointAppeared{node, endpoint.kind, endpoint.name});
@@ -471,15 +462,14 @@ void Link::tell_writers(const std::string& topic) {
 void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch) {
   if (!watch.reads_fields()) return watch.publisher_seen(endpoint.type, endpoint.qos, nullptr);
   types_->find(
-      {node, endpoint.type, endpoint.type_hash, pid_of(node)},
+      {node, endpoint.type, endpoint.type_hash, context_->graph().process_of(node)},
       [&watch, type = endpoint.type, qos = endpoint.qos](const Expected<MessageLibrary*>& library) {
         watch.publisher_seen(type, qos, library);
       });
 }
 
-int Link::pid_of(const std::string& node) const {
-  const auto found = nodes_.find(node);
-  return found == nodes_.end() ? 0 : found->second.pid;
+GuidPrefix Link::participant_of(const std::string& node) const {
+  return context_->graph().node(node).value_or(GraphNode{}).participant;
 }
 
 void Link::probe() {
@@ -525,7 +515,7 @@ void Link::probe() {
 void Link::tell_usage() {
   constexpr Duration kAtOnce = std::chrono::milliseconds(50);
   for (auto& [component, meter] : meters_) {
-    const int pid = pid_of(binding_.node_of(component));
+    const int pid = context_->graph().process_of(binding_.node_of(component));
     const Time before = live_now();
     const auto usage = pid == 0 ? std::nullopt : usage_of(pid);
     const Time now = live_now();
@@ -538,14 +528,10 @@ void Link::tell_usage() {
 std::vector<ListeningProof::Silent> Link::silent_topics() const {
   std::vector<ListeningProof::Silent> silent;
   for (const auto& [name, watch] : watches_) {
-    const auto publishers = publishers_.find(name);
-    const bool has_one = publishers != publishers_.end() && publishers->second.size() == 1;
-    if (!has_one || watch->has_heard() || !watch->is_listening()) continue;
-    const std::string& node = *publishers->second.begin();
-    const auto holder = nodes_.find(node);
-    silent.push_back(
-        {watch->topic(), node,
-         holder == nodes_.end() ? std::nullopt : std::optional(holder->second.participant)});
+    const Graph::Publishers& publishers = context_->graph().nodes_publishing(name);
+    if (publishers.size() != 1 || watch->has_heard() || !watch->is_listening()) continue;
+    const std::string& node = publishers.begin()->first;
+    silent.push_back({watch->topic(), node, participant_of(node)});
   }
   return silent;
 }

@@ -147,7 +147,7 @@ class Link {
   void ask(const std::string& node, Departures::Then then);
   void vanished(const std::string& node, bool was_lost);
   bool is_ours(const std::string& node);
-  int pid_of(const std::string& node) const;
+  GuidPrefix participant_of(const std::string& node) const;
   void on_system(const std::string& manager, const GraphEndpoint& service);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
   void tell_writers(const std::string& topic);
@@ -185,7 +185,6 @@ class Link {
   std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
   std::unique_ptr<LogWatch> log_watch_;
   std::unique_ptr<ParameterWatch> parameter_watch_;
-  std::map<std::string, GraphNode> nodes_;  // that are there, by name
   std::set<std::pair<std::string, std::string>>
       told_of_;                                       // systems, and others that offer their modes
   std::map<std::string, std::string> mode_managers_;  // by system: the node whose modes count
@@ -201,8 +200,7 @@ class Link {
   Namesake namesake_;
   Starvation starvation_;
   std::optional<Time> probed_last_;
-  std::map<std::string, std::vector<std::string>> systems_;       // by the mode manager's node
-  std::map<std::string, std::multiset<std::string>> publishers_;  // nodes, by watched topic
+  std::map<std::string, std::vector<std::string>> systems_;  // by the mode manager's node
   std::unique_ptr<ListeningProof> listening_;
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;

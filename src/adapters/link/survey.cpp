@@ -136,8 +136,8 @@ MapPicture Survey::map(const std::string& wanted, std::uint64_t known) {
 
 void Survey::follow_map(const std::string& wanted) {
   std::vector<MapWatch::Topic> published;
-  for (const auto& [name, use] : topics_) {
-    if (!use.publishers.empty()) published.push_back({name, use.type, use.offered});
+  for (const auto& [name, publishers] : context_->graph().published()) {
+    if (const auto offer = offer_of(name)) published.push_back({name, offer->type, offer->qos});
   }
   map_->follow(published, wanted);
   const bool is_first = map_asked_ == kLongAgo;
@@ -155,22 +155,32 @@ void Survey::end_map_lease() {
 }
 
 LiveInventory Survey::inventory() const {
+  auto found = std::make_shared<std::promise<LiveInventory>>();
+  tasks_->post([this, found] { found->set_value(seen()); });
+  return found->get_future().get();
+}
+
+LiveInventory Survey::seen() const {
   LiveInventory all;
   const MutexLock lock(mutex_);
-  for (const auto& [node, services] : services_) {
-    all.nodes[node];
-    for (const auto& [service, endpoint] : services) all.services.emplace(service, endpoint.type);
+  for (const Graph::NodeView& view : other_nodes()) {
+    LiveInventory::Node& node = all.nodes[view.node.name];
+    const auto reading = nodes_read_.find(view.node.name);
+    if (reading != nodes_read_.end()) node = reading->second->told();
+    node.pid = view.node.pid;
+    for (const GraphEndpoint& endpoint : view.endpoints) {
+      const bool publishes = endpoint.kind == EndpointKind::kPublisher;
+      if (endpoint.kind == EndpointKind::kServer)
+        all.services.emplace(endpoint.name, endpoint.type);
+      if (!publishes && endpoint.kind != EndpointKind::kSubscriber) continue;
+      LiveInventory::Topic& topic = all.topics[endpoint.name];
+      if (topic.type.empty() || (publishes && !topic.is_published())) topic.type = endpoint.type;
+      if (publishes) topic.publishers.insert(view.node.name);
+    }
   }
-  for (const auto& [node, reading] : nodes_read_) all.nodes[node] = reading->told();
-  for (const auto& [node, pid] : pids_) {
-    if (const auto found = all.nodes.find(node); found != all.nodes.end()) found->second.pid = pid;
-  }
-  for (const auto& [topic, use] : topics_) {
-    LiveInventory::Topic& entry = all.topics[topic];
-    entry.type = use.type;
-    entry.publishers = use.publishers;
-    const auto reading = topics_read_.find(topic);
-    if (reading != topics_read_.end()) reading->second->tell(entry);
+  for (const auto& [name, reading] : topics_read_) {
+    if (const auto topic = all.topics.find(name); topic != all.topics.end())
+      reading->tell(topic->second);
   }
   for (const auto& [key, status] : statuses_) all.diagnostics.push_back(status);
   return all;
@@ -218,12 +228,13 @@ std::map<Survey::StatusKey, StatusCourse> Survey::statuses() const {
 Expected<MessageLibrary> Survey::find_service_type(const std::string& service) {
   auto found = std::make_shared<std::promise<Expected<MessageLibrary>>>();
   tasks_->post([this, service, found] {
-    for (const auto& [node, services] : services_) {
-      const auto offered = services.find(service);
-      if (offered == services.end()) continue;
-      const GraphEndpoint& endpoint = offered->second;
+    for (const Graph::NodeView& view : other_nodes()) {
+      const auto offered = std::ranges::find_if(view.endpoints, [&](const GraphEndpoint& each) {
+        return each.kind == EndpointKind::kServer && each.name == service;
+      });
+      if (offered == view.endpoints.end()) continue;
       return types_->find(
-          {node, endpoint.type, endpoint.service_hash, pid_of(node), endpoint.type_hash},
+          {view.node.name, offered->type, offered->service_hash, view.node.pid, offered->type_hash},
           [found](const Expected<MessageLibrary*>& library) {
             found->set_value(library ? Expected<MessageLibrary>(**library)
                                      : Expected<MessageLibrary>(Error{library.error()}));
@@ -234,81 +245,49 @@ Expected<MessageLibrary> Survey::find_service_type(const std::string& service) {
   return found->get_future().get();
 }
 
-int Survey::pid_of(const std::string& node) const {
-  const MutexLock lock(mutex_);
-  const auto known = pids_.find(node);
-  return known == pids_.end() ? 0 : known->second;
-}
-
 // ---- the graph
 
 void Survey::on_change(const GraphChange& change) {
   if (const auto* joined = std::get_if<NodeJoined>(&change)) {
-    if (joined->node.name == options_.name.full()) return;
-    {
-      const MutexLock lock(mutex_);
-      services_[joined->node.name];
-      pids_[joined->node.name] = joined->node.pid;
-    }
-    read_node(joined->node.name);
+    // Its endpoints come next.
+    if (joined->node.name != options_.name.full()) read_node(joined->node.name, {});
   } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
     const MutexLock lock(mutex_);
-    services_.erase(left->node);
-    pids_.erase(left->node);
     nodes_read_.erase(left->node);
   } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
     if (endpoint->node != options_.name.full()) on_endpoint(endpoint->node, endpoint->endpoint);
   } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
-    if (gone->node != options_.name.full()) on_endpoint_left(*gone);
+    on_endpoint_left(*gone);
   }
 }
 
 void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
-  if (endpoint.kind == EndpointKind::kClient) return;
-  if (endpoint.kind == EndpointKind::kServer) {
-    {
-      const MutexLock lock(mutex_);
-      services_[node][endpoint.name] = endpoint;
-    }
-    const auto reading = nodes_read_.find(node);
-    if (reading != nodes_read_.end()) reading->second->service_seen(endpoint.name);
-    return;
-  }
-  {
-    const MutexLock lock(mutex_);
-    TopicUse& use = topics_[endpoint.name];
-    const bool publishes = endpoint.kind == EndpointKind::kPublisher;
-    if (publishes || use.type.empty()) {
-      use.type = endpoint.type;
-      use.type_hash = endpoint.type_hash;
-    }
-    if (publishes) {
-      use.publishers.insert(node);
-      if (use.offered.durability == Durability::kVolatile) use.offered = endpoint.qos;
-    } else {
-      ++use.subscribers;
-    }
-  }
-  read_topic(endpoint.name);
+  if (endpoint.kind == EndpointKind::kPublisher) return read_topic(endpoint.name);
+  const auto reading = nodes_read_.find(node);
+  if (endpoint.kind == EndpointKind::kServer && reading != nodes_read_.end())
+    reading->second->service_seen(endpoint.name);
 }
 
 void Survey::on_endpoint_left(const EndpointLeft& gone) {
+  if (gone.kind != EndpointKind::kPublisher || offer_of(gone.name)) return;
   const MutexLock lock(mutex_);
-  if (gone.kind == EndpointKind::kServer) {
-    const auto node = services_.find(gone.node);
-    if (node != services_.end()) node->second.erase(gone.name);
-    return;
+  topics_read_.erase(gone.name);
+}
+
+std::vector<Graph::NodeView> Survey::other_nodes() const {
+  std::vector<Graph::NodeView> views = context_->graph().nodes();
+  std::erase_if(views, [&](const auto& view) { return view.node.name == options_.name.full(); });
+  return views;
+}
+
+std::optional<Survey::Offer> Survey::offer_of(const std::string& topic) const {
+  std::optional<Offer> offer;
+  for (const auto& [node, endpoint] : context_->graph().nodes_publishing(topic)) {
+    if (node == options_.name.full()) continue;
+    if (!offer) offer = Offer{node, endpoint->type, endpoint->type_hash, endpoint->qos};
+    if (offer->qos.durability == Durability::kVolatile) offer->qos = endpoint->qos;
   }
-  const auto topic = topics_.find(gone.name);
-  if (gone.kind == EndpointKind::kClient || topic == topics_.end()) return;
-  TopicUse& use = topic->second;
-  if (gone.kind == EndpointKind::kPublisher) {
-    use.publishers.erase(gone.node);
-  } else {
-    --use.subscribers;
-  }
-  if (use.publishers.empty()) topics_read_.erase(gone.name);
-  if (use.publishers.empty() && use.subscribers == 0) topics_.erase(topic);
+  return offer;
 }
 
 // ---- what was asked for
@@ -324,30 +303,31 @@ void Survey::on_interest(LiveInterest interest) {
              wanted->second != before.fields_of_topics.at(t.first);
     });
   }
-  for (const auto& [node, services] : services_) read_node(node);
+  for (const Graph::NodeView& view : other_nodes()) read_node(view.node.name, view.endpoints);
   for (const auto& [topic, fields] : interest_.fields_of_topics) read_topic(topic);
 }
 
-void Survey::read_node(const std::string& node) {
+void Survey::read_node(const std::string& node, const std::vector<GraphEndpoint>& endpoints) {
   if (!interest_.includes_node(node) || nodes_read_.contains(node)) return;
   auto reading = std::make_unique<NodeReading>(*node_, node);
-  for (const auto& [service, endpoint] : services_[node]) reading->service_seen(service);
+  for (const GraphEndpoint& endpoint : endpoints) {
+    if (endpoint.kind == EndpointKind::kServer) reading->service_seen(endpoint.name);
+  }
   const MutexLock lock(mutex_);
   nodes_read_.emplace(node, std::move(reading));
 }
 
 void Survey::read_topic(const std::string& topic) {
   const auto wanted = interest_.fields_of_topics.find(topic);
-  const auto use = topics_.find(topic);
-  const bool can_be_read = use != topics_.end() && !use->second.publishers.empty();
-  if (wanted == interest_.fields_of_topics.end() || !can_be_read) return;
-  const TopicUse& read = use->second;
+  if (wanted == interest_.fields_of_topics.end()) return;
+  const std::optional<Offer> offer = offer_of(topic);
+  if (!offer) return;
   if (const auto reading = topics_read_.find(topic); reading != topics_read_.end())
-    return reading->second->publisher_offers(read.offered);
-  if (wanted->second.empty()) return read_topic_with(topic, read.type, nullptr);
-  const std::string& publisher = *read.publishers.begin();
-  types_->find({publisher, read.type, read.type_hash, pid_of(publisher)},
-               [this, topic, type = read.type](const Expected<MessageLibrary*>& library) {
+    return reading->second->publisher_offers(offer->qos);
+  if (wanted->second.empty()) return read_topic_with(topic, offer->type, nullptr);
+  types_->find({offer->publisher, offer->type, offer->type_hash,
+                context_->graph().process_of(offer->publisher)},
+               [this, topic, type = offer->type](const Expected<MessageLibrary*>& library) {
                  read_topic_with(topic, type, library);
                });
 }
@@ -356,11 +336,12 @@ void Survey::read_topic(const std::string& topic) {
 void Survey::read_topic_with(const std::string& topic, const std::string& type,
                              const Expected<MessageLibrary*>& library) {
   const auto wanted = interest_.fields_of_topics.find(topic);
-  if (wanted == interest_.fields_of_topics.end() || topics_read_.contains(topic)) return;
-  auto reading = TopicReading::open(node_->entry(), topic, type, topics_[topic].offered.keys,
-                                    wanted->second, library);
+  const std::optional<Offer> offer = offer_of(topic);
+  if (wanted == interest_.fields_of_topics.end() || topics_read_.contains(topic) || !offer) return;
+  auto reading =
+      TopicReading::open(node_->entry(), topic, type, offer->qos.keys, wanted->second, library);
   if (!reading) return;
-  reading->publisher_offers(topics_[topic].offered);
+  reading->publisher_offers(offer->qos);
   const MutexLock lock(mutex_);
   topics_read_.emplace(topic, std::move(reading));
 }

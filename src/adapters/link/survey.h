@@ -8,7 +8,7 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <set>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,7 +41,7 @@ class Survey {
   // Replaces the former request.
   void ask_for(LiveInterest interest);
 
-  // The present snapshot.
+  // The present snapshot. Waits for the executor's thread, so it must not be called there.
   LiveInventory inventory() const;
   // Subscribes to /rosout from now on.
   void listen_to_log();
@@ -53,8 +53,7 @@ class Survey {
   static constexpr Duration kMapLease = std::chrono::seconds(5);
   // How the messages came of the topics that were asked for, since they are.
   std::map<std::string, Rhythm> rhythms() const;
-  // The same of each node that publishes the topic with one writer; by topic and node. Waits for the executor's thread, so it
-  // must not be called there.
+  // The same of each node that publishes the topic with one writer; by topic and node. It waits, too.
   std::map<std::string, std::map<std::string, Rhythm>> rhythms_of_publishers() const;
 
   // The courses of the requested fields of a topic, since the request; by topic and field.
@@ -68,12 +67,12 @@ class Survey {
   Expected<MessageLibrary> find_service_type(const std::string& service);
 
  private:
-  struct TopicUse {
-    std::set<std::string> publishers;  // nodes
-    int subscribers = 0;
-    std::string type;
+  // What others publish on a topic.
+  struct Offer {
+    std::string publisher;  // the first node
+    std::string type;       // of that one
     std::string type_hash;
-    Qos offered;  // of a publisher; of one that latches, if there is one
+    Qos qos;  // of one of them; of one that latches, if there is one
   };
 
   explicit Survey(Options options);
@@ -84,17 +83,19 @@ class Survey {
   void on_change(const GraphChange& change);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
   void on_endpoint_left(const EndpointLeft& gone);
+  std::vector<Graph::NodeView> other_nodes() const;
+  std::optional<Offer> offer_of(const std::string& topic) const;
+  LiveInventory seen() const;
   void on_parameter_event(const msg::ParameterEvent& event);
   void on_diagnostics(const msg::DiagnosticArray& message);
   void on_log(const msg::Log& line);
   void on_interest(LiveInterest interest);
   void follow_map(const std::string& wanted);
   void end_map_lease();
-  void read_node(const std::string& node);
+  void read_node(const std::string& node, const std::vector<GraphEndpoint>& endpoints);
   void read_topic(const std::string& topic);
   void read_topic_with(const std::string& topic, const std::string& type,
                        const Expected<MessageLibrary*>& library);
-  int pid_of(const std::string& node) const;
 
   const Options options_;
   LiveInterest interest_;  // of the executor's thread
@@ -109,15 +110,13 @@ class Survey {
   std::unique_ptr<MapWatch> map_;
   Time map_asked_ = kLongAgo;  // of the executor's thread; kLongAgo: nobody looks
 
-  // Guards what follows, which only the executor's thread changes: it may read without it.
-  // Its thread changes these four with the mutex, and reads them without; others read with it.
+  // Guards what follows.
   mutable Mutex mutex_;
-  std::map<std::string, std::map<std::string, GraphEndpoint>> services_;  // of each node
-  std::map<std::string, TopicUse> topics_;
   std::map<StatusKey, LiveInventory::Status> statuses_ CULPRIT_GUARDED_BY(mutex_);
   std::map<StatusKey, StatusCourse> courses_ CULPRIT_GUARDED_BY(mutex_);
-  std::map<std::string, int> pids_ CULPRIT_GUARDED_BY(mutex_);  // of the nodes that are there
   std::map<std::string, std::deque<msg::Log>> log_lines_ CULPRIT_GUARDED_BY(mutex_);  // by logger
+  // The executor's thread changes these two with the mutex, and reads them without; others read with
+  // it.
   std::map<std::string, std::unique_ptr<NodeReading>> nodes_read_;
   std::map<std::string, std::unique_ptr<TopicReading>> topics_read_;
 

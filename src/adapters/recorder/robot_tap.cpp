@@ -21,6 +21,14 @@ std::string as_ros2msg(std::string text) {
   return text;
 }
 
+RecordedTopic described(const std::string& topic, const ros2::Graph::Publishers& publishers,
+                        std::optional<std::string> definition) {
+  const ros2::GraphEndpoint& first = *publishers.begin()->second;
+  RecordedTopic about{topic, first.type, first.type_hash, std::move(definition), {}};
+  for (const auto& [node, endpoint] : publishers) about.offers.push_back(endpoint->qos);
+  return about;
+}
+
 std::int64_t nanoseconds_of(ros2::SystemTime time) { return time.time_since_epoch().count(); }
 
 }  // namespace
@@ -151,20 +159,16 @@ Expected<void> RobotTap::start() {
 
 void RobotTap::on_change(const ros2::GraphChange& change) {
   if (std::holds_alternative<ros2::GraphTrouble>(change)) return;
-  if (const auto* joined = std::get_if<ros2::NodeJoined>(&change)) {
-    pids_[joined->node.name] = joined->node.pid;
-  } else if (const auto* left = std::get_if<ros2::NodeLeft>(&change)) {
-    pids_.erase(left->node);
-  } else if (const auto* endpoint = std::get_if<ros2::EndpointJoined>(&change)) {
+  if (const auto* endpoint = std::get_if<ros2::EndpointJoined>(&change)) {
     if (node_ != nullptr && endpoint->node == node_->name().full()) return;
-    on_endpoint(endpoint->node, endpoint->endpoint);
+    on_endpoint(endpoint->endpoint);
   } else if (const auto* gone = std::get_if<ros2::EndpointLeft>(&change)) {
     on_endpoint_left(*gone);
   }
   graph_changed();
 }
 
-void RobotTap::on_endpoint(const std::string& node, const ros2::GraphEndpoint& endpoint) {
+void RobotTap::on_endpoint(const ros2::GraphEndpoint& endpoint) {
   if (endpoint.kind != EndpointKind::kPublisher || !options_.topics.includes(endpoint.name)) return;
   if (topics_.size() >= kMostHeard && !topics_.contains(endpoint.name)) {
     if (!std::exchange(are_too_many_, true))
@@ -172,33 +176,38 @@ void RobotTap::on_endpoint(const std::string& node, const ros2::GraphEndpoint& e
                    " topics are recorded at a time; choose with --record-topics");
     return;
   }
-  topics_[endpoint.name].publishers[node] = endpoint;
   hear(endpoint.name);
 }
 
 void RobotTap::on_endpoint_left(const ros2::EndpointLeft& gone) {
   const auto topic = topics_.find(gone.name);
   if (gone.kind != EndpointKind::kPublisher || topic == topics_.end()) return;
+  if (!publishers_of(gone.name).empty()) return;
   TopicUse& use = topic->second;
-  use.publishers.erase(gone.node);
-  if (use.publishers.empty()) use.listening.reset();
-  if (use.publishers.empty() && !use.is_given_up && !use.is_asked_for) topics_.erase(topic);
+  use.listening.reset();
+  if (!use.is_given_up && !use.is_asked_for) topics_.erase(topic);
+}
+
+// But for ourselves.
+ros2::Graph::Publishers RobotTap::publishers_of(const std::string& topic) const {
+  ros2::Graph::Publishers publishers = context_->graph().nodes_publishing(topic);
+  publishers.erase(node_->name().full());
+  return publishers;
 }
 
 void RobotTap::hear(const std::string& topic) {
   TopicUse& use = topics_[topic];
-  if (use.is_given_up || use.is_asked_for || use.publishers.empty()) return;
+  const ros2::Graph::Publishers publishers = publishers_of(topic);
+  if (use.is_given_up || use.is_asked_for || publishers.empty()) return;
   if (use.listening != nullptr) {
-    for (const auto& [node, endpoint] : use.publishers)
-      use.listening->publisher_offers(endpoint.qos);
+    for (const auto& [node, endpoint] : publishers) use.listening->publisher_offers(endpoint->qos);
     return;
   }
-  const auto& [node, endpoint] = *use.publishers.begin();
-  const std::string type = endpoint.type;
-  const std::string hash = endpoint.type_hash;
+  const auto& [node, endpoint] = *publishers.begin();
+  const std::string type = endpoint->type;
+  const std::string hash = endpoint->type_hash;
   use.is_asked_for = true;
-  const auto pid = pids_.find(node);
-  types_->find({node, type, hash, pid == pids_.end() ? 0 : pid->second},
+  types_->find({node, type, hash, context_->graph().process_of(node)},
                [this, topic, type, hash](const Expected<ros2::MessageLibrary*>& library) {
                  hear_with(topic, type, hash, library);
                });
@@ -209,11 +218,12 @@ void RobotTap::hear_with(const std::string& topic, const std::string& type, cons
                          const Expected<ros2::MessageLibrary*>& library) {
   TopicUse& use = topics_[topic];
   use.is_asked_for = false;
-  if (use.publishers.empty()) {
+  const ros2::Graph::Publishers publishers = publishers_of(topic);
+  if (publishers.empty()) {
     topics_.erase(topic);
     return;
   }
-  const ros2::GraphEndpoint& publisher = use.publishers.begin()->second;
+  const ros2::GraphEndpoint& publisher = *publishers.begin()->second;
   if (publisher.type != type || publisher.type_hash != hash) return hear(topic);
   std::optional<std::string> definition;
   std::string why = library ? "" : library.error();
@@ -227,22 +237,15 @@ void RobotTap::hear_with(const std::string& topic, const std::string& type, cons
   }
   if (!definition && unknown_types_.insert(type).second)
     options_.say("recorded without its definition, so that others cannot read it: " + why);
-  const std::size_t number = recorder_.add_topic(describe(topic, use, std::move(definition)));
+  const std::size_t number =
+      recorder_.add_topic(described(topic, publishers, std::move(definition)));
   auto listening = std::make_unique<Listening>(*this, topic, number, !options_.topics.names(topic));
   if (const auto opened = listening->open(node_->entry(), type, publisher.qos.keys); !opened) {
     use.is_given_up = true;
     return options_.say(topic + " is not recorded: " + opened.error());
   }
   use.listening = std::move(listening);
-  for (const auto& [node, endpoint] : use.publishers) use.listening->publisher_offers(endpoint.qos);
-}
-
-RecordedTopic RobotTap::describe(const std::string& topic, const TopicUse& use,
-                                 std::optional<std::string> definition) const {
-  const ros2::GraphEndpoint& first = use.publishers.begin()->second;
-  RecordedTopic about{topic, first.type, first.type_hash, std::move(definition), {}};
-  for (const auto& [node, endpoint] : use.publishers) about.offers.push_back(endpoint.qos);
-  return about;
+  for (const auto& [node, endpoint] : publishers) use.listening->publisher_offers(endpoint->qos);
 }
 
 // If it cannot be, it goes on as it was.

@@ -55,10 +55,9 @@ class RobotTap {
   class Listening;
 
   struct TopicUse {
-    std::map<std::string, ros2::GraphEndpoint> publishers;  // by node
-    std::unique_ptr<Listening> listening;                   // null: not received
-    bool is_asked_for = false;                              // its type is
-    bool is_given_up = false;                               // it is too large
+    std::unique_ptr<Listening> listening;  // null: not received
+    bool is_asked_for = false;             // its type is
+    bool is_given_up = false;              // it is too large
   };
 
   RobotTap(Options options, IncidentRecorder& recorder);
@@ -66,13 +65,12 @@ class RobotTap {
 
   // On the executor's thread.
   void on_change(const ros2::GraphChange& change);
-  void on_endpoint(const std::string& node, const ros2::GraphEndpoint& endpoint);
+  void on_endpoint(const ros2::GraphEndpoint& endpoint);
   void on_endpoint_left(const ros2::EndpointLeft& gone);
+  ros2::Graph::Publishers publishers_of(const std::string& topic) const;
   void hear(const std::string& topic);
   void hear_with(const std::string& topic, const std::string& type, const std::string& hash,
                  const Expected<ros2::MessageLibrary*>& library);
-  RecordedTopic describe(const std::string& topic, const TopicUse& use,
-                         std::optional<std::string> definition) const;
   void hurry(const std::string& topic);
   void give_up(const std::string& topic, double bytes_per_second);
   void graph_changed();
@@ -81,7 +79,6 @@ class RobotTap {
   const Options options_;
   IncidentRecorder& recorder_;
   std::map<std::string, TopicUse> topics_;
-  std::map<std::string, int> pids_;      // of the nodes that are there
   std::set<std::string> unknown_types_;  // that were reported
   bool is_graph_due_ = false;
   bool are_too_many_ = false;  // topics, and that was reported

@@ -336,7 +336,10 @@ void Graph::show(const Guid& guid) {
   if (node == nullptr || endpoint == nullptr || !endpoint->ros) return;
   const GraphEndpoint& ros = *endpoint->ros;
   Edge& edge = node->edges.try_emplace(EdgeKey{ros.kind, ros.name}, Edge{ros}).first->second;
-  if (++edge.count == 1) tell(EndpointJoined{owners_.at(guid), ros});
+  if (++edge.count > 1) return;
+  const std::string& name = owners_.at(guid);
+  if (ros.kind == EndpointKind::kPublisher) published_[ros.name].emplace(name, &edge.endpoint);
+  tell(EndpointJoined{name, ros});
 }
 
 void Graph::hide(const Guid& guid) {
@@ -347,7 +350,17 @@ void Graph::hide(const Guid& guid) {
   const auto edge = node->edges.find(EdgeKey{ros.kind, ros.name});
   if (--edge->second.count > 0) return;
   node->edges.erase(edge);
-  tell(EndpointLeft{owners_.at(guid), ros.kind, ros.name});
+  tell_hidden(owners_.at(guid), EdgeKey{ros.kind, ros.name});
+}
+
+// @pre the edge is in no node any more
+void Graph::tell_hidden(const std::string& node, const EdgeKey& edge) {
+  const auto topic = published_.find(edge.second);
+  if (edge.first == EndpointKind::kPublisher && topic != published_.end()) {
+    topic->second.erase(node);
+    if (topic->second.empty()) published_.erase(topic);
+  }
+  tell(EndpointLeft{node, edge.first, edge.second});
 }
 
 // The node that claims the endpoint, if that participant's node of this name is the one that
@@ -381,8 +394,7 @@ void Graph::tell_joined(const std::string& name, Node& node) {
 }
 
 void Graph::tell_left(const std::string& name, Node& node) {
-  for (const auto& [key, edge] : node.edges) tell(EndpointLeft{name, key.first, key.second});
-  node.edges.clear();
+  for (const auto& [key, edge] : std::exchange(node.edges, {})) tell_hidden(name, key);
   count_component(node, false);
   node.told.reset();
   tell(NodeLeft{name, is_losing_});
@@ -545,6 +557,23 @@ Graph::Owner Graph::owner_of(const Guid& endpoint) const {
 int Graph::process_of(const GuidPrefix& prefix) const {
   const auto peer = peers_.find(prefix);
   return peer == peers_.end() ? 0 : peer->second.pid;
+}
+
+int Graph::process_of(const std::string& name) const {
+  const auto found = nodes_.find(name);
+  return found == nodes_.end() || !found->second.told ? 0 : process_of(*found->second.told);
+}
+
+std::optional<GraphNode> Graph::node(const std::string& name) const {
+  const auto found = nodes_.find(name);
+  if (found == nodes_.end() || !found->second.told) return std::nullopt;
+  return describe(name, peers_.at(*found->second.told));
+}
+
+const Graph::Publishers& Graph::nodes_publishing(const std::string& topic) const {
+  static const Publishers kNone;
+  const auto found = published_.find(topic);
+  return found == published_.end() ? kNone : found->second;
 }
 
 std::vector<std::pair<Guid, std::string>> Graph::publishers_of(const std::string& topic) const {

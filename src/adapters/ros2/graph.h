@@ -128,7 +128,9 @@ class Graph {
   // Where the datagrams of a participant come from; empty: this machine.
   using SourceOf = std::function<std::string(const ParticipantInfo&)>;
   using IsAskedAbout = std::function<bool(const std::string& node)>;
-  using Listener = std::function<void(const GraphChange&)>;  // must not call back into the graph
+  // It may ask the graph for nodes, their processes and what they publish, as after the change, and
+  // for nothing else.
+  using Listener = std::function<void(const GraphChange&)>;
 
   struct Options {
     Listener listener;
@@ -143,6 +145,7 @@ class Graph {
   };
 
   explicit Graph(Options options);
+  Graph(const Graph&) = delete;
 
   void apply(const DiscoveryEvent& event);
   // The nodes of `info.participant`, as it announced them in this form; replaces the earlier
@@ -168,7 +171,14 @@ class Graph {
   // Null when they are not known (any more).
   const ParticipantInfo* participant(const GuidPrefix& prefix) const;
   const EndpointInfo* endpoint(const Guid& guid) const;
-  // The endpoints that publish the topic, each with its node.
+  // The node of this name that counts.
+  std::optional<GraphNode> node(const std::string& name) const;
+  // The nodes that count and publish a topic, each with its endpoint. Until the graph changes.
+  using Publishers = std::map<std::string, const GraphEndpoint*>;
+  const Publishers& nodes_publishing(const std::string& topic) const;
+  // The same of each topic that has one.
+  const std::map<std::string, Publishers>& published() const { return published_; }
+  // The endpoints that publish the topic, each with its node, whether that counts or not.
   std::vector<std::pair<Guid, std::string>> publishers_of(const std::string& topic) const;
   // The owner of an endpoint: no node, while none claims it.
   struct Owner {
@@ -179,6 +189,7 @@ class Graph {
   Owner owner_of(const Guid& endpoint) const;
   // Its process on this machine; 0: it is elsewhere, or not proven, or not known.
   int process_of(const GuidPrefix& prefix) const;
+  int process_of(const std::string& node) const;
 
   // Every node, by name, with its endpoints.
   struct NodeView {
@@ -264,6 +275,7 @@ class Graph {
   // The edge that an endpoint makes, if it is discovered, and claimed by a node that counts.
   void show(const Guid& guid);
   void hide(const Guid& guid);
+  void tell_hidden(const std::string& node, const EdgeKey& edge);
   Node* holder_of(const Guid& guid);
   void tell_joined(const std::string& name, Node& node);
   void tell_left(const std::string& name, Node& node);
@@ -296,6 +308,7 @@ class Graph {
   std::size_t claim_count_ = 0;                   // claimed, of all peers
   std::unordered_map<Guid, std::string> owners_;  // endpoint -> the node that claims it
   std::map<std::string, Node> nodes_;
+  std::map<std::string, Publishers> published_;  // by topic; of the nodes' edges
   std::set<std::string> proven_here_;  // names that are kept here, and were proven to be held here
   std::set<const char*> exceeded_;     // limits whose trouble was reported
   bool is_losing_ = false;             // participants leave now by their leases

@@ -176,6 +176,28 @@ TEST(Graph, EndpointsVanishBeforeTheirNode) {
   EXPECT_THAT(watched.graph().nodes(), IsEmpty());
 }
 
+TEST(Graph, ShowsItsListenerWhoPublishesAfterTheChange) {
+  std::vector<std::string> seen;
+  const Graph* shown = nullptr;
+  Graph::Options options;
+  options.listener = [&](const GraphChange&) {
+    std::string publishers;
+    for (const auto& [name, each] : shown->nodes_publishing("/t")) publishers += name + " ";
+    seen.push_back(publishers + (shown->node("/a") ? "and /a is there" : "and /a is not"));
+  };
+  Graph graph(std::move(options));
+  shown = &graph;
+  ParticipantInfo info;
+  info.guid = guid_of(1, 0, false);
+  graph.apply(info);
+  graph.apply(publishes(writer(1, 1), "/t"));
+  graph.apply(DiscoveryInfo{info.guid, {node("/", "a", {writer(1, 1)})}});
+  EXPECT_THAT(seen, ElementsAre("and /a is there", "/a and /a is there"));
+  seen.clear();
+  graph.apply(ParticipantGone{info.guid});
+  EXPECT_THAT(seen, ElementsAre("and /a is there", "and /a is not"));
+}
+
 TEST(Graph, AMessageReplacesWhatWasSaidBefore) {
   Watched watched;
   watched.joins(1)
@@ -709,12 +731,24 @@ RC_GTEST_PROP(Graph, WhatItTellsAddsUpToWhatItShows, ()) {
   }
   std::set<std::string> shown;
   std::size_t shown_edges = 0;
+  std::map<std::string, std::set<std::string>> publishers;
   for (const auto& view : graph.nodes()) {
     shown.insert(view.node.name);
     shown_edges += view.endpoints.size();
+    for (const GraphEndpoint& each : view.endpoints) {
+      if (each.kind == EndpointKind::kPublisher) publishers[each.name].insert(view.node.name);
+    }
   }
   RC_ASSERT(shown == nodes);
   RC_ASSERT(shown_edges == edges.size());
+  std::map<std::string, std::set<std::string>> published;
+  for (const auto& [topic, by_node] : graph.published()) {
+    for (const auto& [name, each] : by_node) {
+      RC_ASSERT(each->name == topic && each->kind == EndpointKind::kPublisher);
+      published[topic].insert(name);
+    }
+  }
+  RC_ASSERT(published == publishers);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "base/live_clock.h"
@@ -149,10 +148,11 @@ class Look {
     Picture wiring;
     wiring.nodes = nodes_with_endpoints(context_->graph().participants());
     topics_->listen_to(wanted_topics(wiring, options_.extent));
+    const auto& published = context_->graph().published();
     for (const char* topic : {"/tf", "/tf_static"}) {
-      if (published_.contains(topic)) transforms_->listen_to(topic, now);
+      if (published.contains(topic)) transforms_->listen_to(topic, now);
     }
-    if (published_.contains("/clock")) clock_->listen();
+    if (published.contains("/clock")) clock_->listen();
   }
 
   // ---- questions
@@ -214,8 +214,6 @@ class Look {
       nodes_.erase(left->node);
     } else if (const auto* endpoint = std::get_if<ros2::EndpointJoined>(&change)) {
       wiring_changed_ = wiring_changed_ || endpoint->node != node_name_;
-      if (endpoint->endpoint.kind == EndpointKind::kPublisher)
-        published_.insert(endpoint->endpoint.name);
     }
   }
 
@@ -393,7 +391,6 @@ class Look {
   std::map<std::string, std::vector<ros2::GraphNode>> namesakes_;
   std::map<std::string, std::vector<Dated>> comings_;
   std::map<std::string, HeardStatus> statuses_;
-  std::set<std::string> published_;
   std::map<int, Time> ended_;
   std::string node_name_;  // ours
   bool wiring_changed_ = false;
