@@ -96,24 +96,8 @@ std::vector<PaperPlanner::Option> PaperPlanner::cheapest_first(std::span<const R
 void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowledge& knowledge,
                            const std::vector<ComponentId>& affected,
                            const Decision& decision) const {
-  const Strategy& strategy = knowledge.rules[candidate.strategy];
-  if (knowledge.states.is_tried(candidate.strategy)) {
-    candidate.excluded = Condition::kTried;
-    return;
-  }
-  if (auto invalid = plan::invalidity(strategy, knowledge)) {
-    candidate.excluded = invalid->waits ? Condition::kUnheard : Condition::kInvalid;
-    candidate.component = invalid->component;
-    candidate.remark = std::move(invalid->reason);
-    return;
-  }
-  if (const auto& reason = knowledge.withheld[candidate.strategy.index].reason; !reason.empty()) {
-    candidate.excluded = Condition::kWithheld;
-    candidate.component = strategy.components.front();
-    candidate.remark = reason;
-    return;
-  }
-  for (const ComponentId component : strategy.components) {
+  if (plan::is_excluded_alone(candidate, knowledge)) return;
+  for (const ComponentId component : knowledge.rules[candidate.strategy].components) {
     candidate.component = component;
     if (knowledge.states.reservation(component) != nullptr) {
       candidate.excluded = Condition::kAdapting;

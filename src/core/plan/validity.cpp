@@ -398,6 +398,23 @@ std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& kno
   return impossibility(strategy, knowledge);
 }
 
+bool is_excluded_alone(Candidate& candidate, const Knowledge& knowledge) {
+  const Strategy& strategy = knowledge.rules[candidate.strategy];
+  const std::string& withheld = knowledge.withheld[candidate.strategy.index].reason;
+  if (knowledge.states.is_tried(candidate.strategy)) {
+    candidate.excluded = Condition::kTried;
+  } else if (auto invalid = invalidity(strategy, knowledge)) {
+    candidate.excluded = invalid->waits ? Condition::kUnheard : Condition::kInvalid;
+    candidate.component = invalid->component;
+    candidate.remark = std::move(invalid->reason);
+  } else if (!withheld.empty()) {
+    candidate.excluded = Condition::kWithheld;
+    candidate.component = strategy.components.front();
+    candidate.remark = withheld;
+  }
+  return candidate.excluded.has_value();
+}
+
 LastResortParts parts_of_last_resort(const Strategy& strategy, const Knowledge& knowledge) {
   LastResortParts parts;
   if (const auto untimely = untimely_by_when(strategy, knowledge)) {

@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "knowledge/event.h"
 #include "knowledge/knowledge.h"
 
 namespace culprit::plan {
@@ -40,6 +41,10 @@ struct Invalid {
 
 // Empty if the strategy is valid.
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge);
+
+// Whether the strategy cannot be chosen whatever else is: it was tried, it is invalid, or it is withheld.
+// The candidate then says so.
+bool is_excluded_alone(Candidate& candidate, const Knowledge& knowledge);
 
 // A last resort has only these obstacles: a part cannot be carried out, one that is as critical holds what the
 // part would change, or its WHEN is not true.

@@ -42,24 +42,12 @@ std::vector<double> connectors(const Knowledge& knowledge) {
 // Finds the reason why a strategy cannot be executed now, apart from the other chosen strategies.
 void examine(Candidate& candidate, const std::vector<ComponentId>& affected,
              const Knowledge& knowledge) {
-  const Strategy& strategy = knowledge.rules[candidate.strategy];
-  if (knowledge.states.is_tried(candidate.strategy)) {
-    candidate.excluded = Condition::kTried;
+  if (plan::is_excluded_alone(candidate, knowledge)) {
+    // They wait for nothing.
+    if (candidate.excluded == Condition::kUnheard) candidate.excluded = Condition::kInvalid;
     return;
   }
-  if (auto invalid = plan::invalidity(strategy, knowledge)) {
-    candidate.excluded = Condition::kInvalid;
-    candidate.component = invalid->component;
-    candidate.remark = std::move(invalid->reason);
-    return;
-  }
-  if (const auto& reason = knowledge.withheld[candidate.strategy.index].reason; !reason.empty()) {
-    candidate.excluded = Condition::kWithheld;
-    candidate.component = strategy.components.front();
-    candidate.remark = reason;
-    return;
-  }
-  for (const ComponentId component : strategy.components) {
+  for (const ComponentId component : knowledge.rules[candidate.strategy].components) {
     const bool is_affected =
         std::find(affected.begin(), affected.end(), component) != affected.end();
     if (!is_affected && knowledge.states.reservation(component) == nullptr) continue;
