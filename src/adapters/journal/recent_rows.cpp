@@ -1,5 +1,6 @@
 #include "journal/recent_rows.h"
 
+#include "base/invariant.h"
 #include "journal/intent_file.h"
 
 namespace culprit::journal {
@@ -7,6 +8,7 @@ namespace culprit::journal {
 const std::size_t RecentRows::kMaxBytes = IntentFile::kMaxBytes / 2;
 
 void RecentRows::replace(std::uint64_t decision, std::span<const Entry> rows) {
+  CULPRIT_ASSERT(recent_.empty() || recent_.back().decision <= decision);  // forget() goes in order
   if (recent_.empty() || recent_.back().decision != decision) recent_.push_back({decision, {}});
   std::string& text = recent_.back().rows;
   bytes_ -= text.size();

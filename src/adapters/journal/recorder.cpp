@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/invariant.h"
 #include "journal/event_json.h"
 #include "journal/recovery.h"
 #include "journal/requests.h"
@@ -138,6 +139,8 @@ void Recorder::Queue::clear() {
 
 void Recorder::hand_over(Pending& step, std::span<const Command> commands,
                          std::span<const Event> events) {
+  CULPRIT_ASSERT(kept_ > 0 && &step == &places_[kept_ - 1]);
+  CULPRIT_ASSERT(step.decided == nullptr);  // rows of an earlier step would be written again
   date_kept();
   const bool decides = !commands.empty() || !events.empty();
   if (decides) decide(step, commands, events);
@@ -223,6 +226,7 @@ void Recorder::wake_writer() {
 
 void Recorder::before_commands(Time now, std::vector<Observation>& observations,
                                std::span<const Command> commands, std::span<const Event> events) {
+  CULPRIT_ASSERT(kept_ < kMaxKept);
   Pending& place = places_[kept_++];
   place.now = now;
   place.observations.swap(observations);
@@ -286,6 +290,7 @@ bool Recorder::is_with_the_kernel(const Decided& decision, Time now) {
   if (in_file_ <= saved) intents_->begin_after(std::move(head));
   rows_.clear();
   recent_.append_to(rows_);
+  CULPRIT_ASSERT(!rows_.empty());  // the request would go out without its row
   if (const auto written = intents_->append(now, rows_); !written) {
     const MutexLock lock(mutex_);
     intents_.reset();
@@ -369,6 +374,8 @@ void Recorder::make_rows(Pending& pending) {
 
 void Recorder::make_decision(std::int64_t wall, Decided& decision) {
   for (Entry& row : decision.rows) add(std::move(row));
+  // An earlier decision would count as saved before it is, and be missing after a crash.
+  CULPRIT_ASSERT(decision.number == 0 || decision.number > unsaved_to_);
   unsaved_to_ = std::max(unsaved_to_, decision.number);
   if (decision.robot) {
     robot_ = robot_row(*decision.robot, where_);

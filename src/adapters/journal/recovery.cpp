@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/invariant.h"
 #include "journal/bytes.h"
 #include "journal/event_json.h"
 #include "journal/requests.h"
@@ -279,6 +280,8 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
     });
   }
   recovery.interrupted = std::move(trail).open(now.robot, manager_before);
+  for (const Interrupted& each : recovery.interrupted)
+    CULPRIT_ASSERT(each.adaptations_done <= rules[each.strategy].adaptations.size());
   return recovery;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "owners/proc.h"
 
@@ -320,6 +321,7 @@ ComposedNodes::Answer ComposedNodes::stop_part(Container& container, const Erran
 // `is_stuck`: the container was asked in vain.
 ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& errand, int pid,
                                             bool& is_stuck) {
+  CULPRIT_ASSERT(pid != 0);  // a container that is not proven to be of this machine
   const Component& part = rules_[errand.component];
   const Duration patience = errand.hangs == Hangs::kYes ? kHungAnswer : kAnswer;
   const auto stuck = [&](const ContainerAnswer& answer) {
@@ -388,6 +390,7 @@ std::string ComposedNodes::why_not_replace(const Container& container, int pid) 
 }
 
 ComposedNodes::Answer ComposedNodes::replace(Container& container, int pid, Hangs hangs) {
+  CULPRIT_ASSERT(container.component && pid != 0);  // any process of its owner would be ended
   const Answer answer = ask_owner(
       [&](CommandId id) {
         owner_.stop(id, *container.component, pid, Ending::kToStartAgain, hangs);
@@ -407,6 +410,7 @@ bool ComposedNodes::is_coming(const Container& container) {
 }
 
 ComposedNodes::Answer ComposedNodes::begin(Container& container) {
+  CULPRIT_ASSERT(container.component);
   Answer started = ask_owner([&](CommandId id) { owner_.start(id, *container.component); }, kOwner);
   container.unanswered.clear();
   if (started.outcome != Outcome::kDone) return started;
@@ -486,6 +490,7 @@ void ComposedNodes::load_all(Container& container, int pid, const Errand& errand
 
 ComposedNodes::Answer ComposedNodes::load(Container& container, ComponentId part, int pid,
                                           Duration patience) {
+  CULPRIT_ASSERT(pid != 0);
   const Component& component = rules_[part];
   const Process own = process_of(component.node);
   if (own.is_there && own.pid != pid)

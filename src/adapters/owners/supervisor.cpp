@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <sys/wait.h>
 
+#include "base/invariant.h"
 #include "owners/bounded_log.h"
 #include "owners/launch_note.h"
 #include "owners/mark.h"
@@ -100,6 +101,7 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
     meet(command, component);
     return {};
   }
+  CULPRIT_ASSERT(is_gone(component));  // it would run twice
   end_what_is_left(component, "");
   const int launcher = launchers_.running(component);
   note_launch(programs_.log_folder, programs_.mark(component), launcher);
@@ -122,6 +124,8 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
 void Supervisor::finish_starts() {
   for (Member& member : members_) {
     if (!member.launch || !is_readable(member.launch->descriptor())) continue;
+    // The answer of another's process would be taken for it.
+    CULPRIT_ASSERT(member.process.relation() == Relation::kChild);
     const auto runs = member.launch->outcome();
     if (!runs) note_missing(*member.launch, member.component, runs.error());
     member.launch.reset();
@@ -194,6 +198,7 @@ void Supervisor::adopt_again(ComponentId component, int pid, Time known) {
 }
 
 void Supervisor::watch(ComponentId component, int pid, Relation relation) {
+  CULPRIT_ASSERT(!is_known(component, pid));  // its end would be reaped twice
   // A supervisor before this one may have started it.
   if (is_child(pid)) relation = Relation::kChild;
   auto process = WatchedProcess::watch(pid, relation);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 
+#include "base/invariant.h"
 #include "owners/launch_note.h"
 #include "owners/mark.h"
 #include "owners/proc.h"
@@ -231,6 +232,7 @@ void Supervisor::stop_all() {
 }
 
 void Supervisor::end_member(Member& member) {
+  CULPRIT_ASSERT(!member.launch);  // which reaps it itself, if it does not run
   // Children of the process must not live on beside its successor. While it is not reaped, no other
   // group can have its number.
   member.process.kill_group();
@@ -302,6 +304,7 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
   }
   for (Member& member : members_) {
     if (!is_meant(shutdown, member)) continue;
+    CULPRIT_ASSERT(member.component == shutdown.component);  // another's process would be ended
     member.tree.clear();
     if (shutdown.signal == SIGKILL) ports_.note(member.process.pid());
     if (!member.variable.empty())

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/closest.h"
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "owners/proc.h"
 
@@ -124,6 +125,7 @@ Duration Units::polite_for(const Errand& errand) const {
 }
 
 void Units::add(Errand errand) {
+  CULPRIT_ASSERT(is_ours(errand.component));  // another's unit would be asked to end
   errand.until = later(live_now(), kStart);
   errand.since = live_now();
   errand.latest = later(errand.since, kEnd);
@@ -352,6 +354,7 @@ std::optional<std::string> Units::hold_of(const Errand& errand, const UnitState&
 }
 
 bool Units::begin_end(Errand& errand, const UnitState& state) {
+  CULPRIT_ASSERT(errand.kind != Errand::Kind::kStart);
   const std::string& name = name_of(errand.component);
   ServiceOwner& bus = owner_of(errand.component);
   if (!is_here() && errand.pid != 0)

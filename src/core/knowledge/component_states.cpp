@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/invariant.h"
+
 namespace culprit {
 
 std::string_view to_string(Lifecycle state) {
@@ -39,18 +41,21 @@ void ComponentStates::forget_given_back() {
 void ComponentStates::set_known_dead(ComponentId component, std::optional<Time> since) {
   std::optional<Time>& known = components_[component.index].known_dead;
   known_dead_ += static_cast<int>(since.has_value()) - static_cast<int>(known.has_value());
+  CULPRIT_ASSERT(known_dead_ >= 0);  // the dead would be asked, and their inputs believed
   known = since;
 }
 
 void ComponentStates::set_host_silent(ComponentId component, std::optional<Time> since) {
   std::optional<Time>& known = components_[component.index].host_silent;
   unreached_ += static_cast<int>(since.has_value()) - static_cast<int>(known.has_value());
+  CULPRIT_ASSERT(unreached_ >= 0);  // what nobody can know would be acted on; below, too
   known = since;
 }
 
 void ComponentStates::set_out_of_reach(ComponentId component, bool is_out_of_reach) {
   bool& known = components_[component.index].is_out_of_reach;
   unreached_ += static_cast<int>(is_out_of_reach) - static_cast<int>(known);
+  CULPRIT_ASSERT(unreached_ >= 0);
   known = is_out_of_reach;
 }
 
@@ -59,6 +64,7 @@ void ComponentStates::set_time_held(ComponentId component, std::optional<Time> s
   const int change = static_cast<int>(since.has_value()) - static_cast<int>(known.has_value());
   unreached_ += change;
   times_held_ += change;
+  CULPRIT_ASSERT(times_held_ >= 0 && times_held_ <= unreached_);
   known = since;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/invariant.h"
+
 namespace culprit {
 namespace {
 
@@ -84,10 +86,14 @@ class Traversal {
   // From `root` on, the open vertices are an SCC. All its dependencies are in one now.
   void close(Vertex root) {
     const auto scc = static_cast<Condensation::Scc>(found_.first_producer.size() - 1);
-    const auto first = std::find(open_.rbegin(), open_.rend(), root).base() - 1;
+    const auto place = std::find(open_.rbegin(), open_.rend(), root);
+    CULPRIT_ASSERT(place != open_.rend());
+    const auto first = place.base() - 1;
     std::for_each(first, open_.end(), [&](Vertex member) { found_.of[member] = scc; });
     std::for_each(first, open_.end(), [&](Vertex member) {
       for (const Vertex target : neighbours_.of(member)) {
+        // A consumer would be judged, and repaired, before what it depends on.
+        CULPRIT_ASSERT(found_.of[target] <= scc);
         if (found_.of[target] != scc) found_.producers.push_back(found_.of[target]);
       }
     });
@@ -107,6 +113,7 @@ class Traversal {
 }  // namespace
 
 void ChannelEdges::add(std::span<const Vertex> producers, std::span<const Vertex> consumers) {
+  CULPRIT_ASSERT(!producers.empty() && !consumers.empty());
   // Most channels have one producer, which then stands for the channel.
   Vertex middle = producers.front();
   if (producers.size() > 1) {

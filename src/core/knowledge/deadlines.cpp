@@ -1,5 +1,7 @@
 #include "knowledge/deadlines.h"
 
+#include "base/invariant.h"
+
 namespace culprit {
 
 Deadlines::Deadlines(std::size_t count) : position_of_(count, kAbsent) { heap_.reserve(count); }
@@ -27,6 +29,7 @@ void Deadlines::set(std::size_t index, Time at) {
 }
 
 std::size_t Deadlines::pop() {
+  CULPRIT_ASSERT(!heap_.empty());
   const std::size_t index = heap_.front().index;
   remove(0);
   return index;
@@ -60,6 +63,8 @@ void Deadlines::sift_down(std::size_t position) {
 }
 
 void Deadlines::remove(std::size_t position) {
+  // Another one's deadline would go, and its silence stay unnoticed.
+  CULPRIT_ASSERT(position < heap_.size() && position_of_[heap_[position].index] == position);
   position_of_[heap_[position].index] = kAbsent;
   const Entry last = heap_.back();
   heap_.pop_back();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/invariant.h"
+
 namespace culprit {
 namespace {
 
@@ -194,8 +196,8 @@ bool Departures::is_any_orphan() const {
   });
 }
 
-// @pre its launcher has ended
 Departures::Verdict Departures::verdict(const Launch& launch, Time now) const {
+  CULPRIT_ASSERT(launch.ended != kNever);
   const bool are_leaving = launch.left > 0 && launch.left_first <= later(launch.ended, kTogether) &&
                            launch.ended <= later(launch.left_at, kTogether);
   // The exit code of ros2 launch is 1 after an error of its own shutdown, too.
@@ -236,6 +238,7 @@ bool Departures::has_outlived(const Launch& launch, Time at) {
 // Its components are of no launch from now on.
 void Departures::dissolve(const Launch& launch) {
   const int launcher = launch.launcher;
+  CULPRIT_ASSERT(launcher != 0);
   for (Member& member : members_) {
     if (member.launcher == launcher) member.launcher = 0;
   }
@@ -244,6 +247,8 @@ void Departures::dissolve(const Launch& launch) {
 // A component that ends while the launch still ends its components stays down with it. One that
 // runs on after that is of no launch.
 void Departures::take_down(const Launch& launch, Time now) {
+  CULPRIT_ASSERT(launch.launcher != 0);  // all that are of no launch would be ended, and stay down
+  CULPRIT_ASSERT(launch.verdict.what == Verdict::What::kEnded);
   const Time over = later(launch.ended, kTogether);
   for (Member& member : members_) {
     if (member.launcher != launch.launcher || member.down) continue;

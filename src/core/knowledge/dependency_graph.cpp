@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/invariant.h"
 #include "base/ros_names.h"
 
 namespace culprit {
@@ -203,6 +204,7 @@ std::vector<KnownRobot::End> DependencyGraph::ends_of(ComponentId component) con
     const auto& ends = producer ? channel.producers : channel.consumers;
     const auto own =
         std::find_if(ends.begin(), ends.end(), [&](const End& e) { return e.node == *node; });
+    CULPRIT_ASSERT(own != ends.end());
     if (!counts(*own, channel, producer)) return;
     const EndpointKind of_topic = producer ? EndpointKind::kPublisher : EndpointKind::kSubscriber;
     const EndpointKind of_service = producer ? EndpointKind::kServer : EndpointKind::kClient;
@@ -224,6 +226,8 @@ bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind ki
                                 [&](const End& e) { return e.node == node_id->second; });
   if (end == ends.end() || end->count == 0) return false;
   if (--end->count > 0) return false;
+  // Below zero, a topic whose last publisher is gone would count as published.
+  CULPRIT_ASSERT(!produces(kind) || channel.live_producers > 0);
   if (produces(kind)) --channel.live_producers;
   whole_.reset();
   ++changes_;
@@ -352,6 +356,7 @@ bool DependencyGraph::reads_others(ComponentId component) const {
   return !own.declared_producers.empty() || std::ranges::any_of(own.consumes, [&](ChannelId id) {
     const Channel& channel = channels_[id.index];
     const auto end = std::ranges::find(channel.consumers, *node, &End::node);
+    CULPRIT_ASSERT(end != channel.consumers.end());
     return is_data_flow(channel) && counts(*end, channel, false) &&
            std::ranges::any_of(channel.producers, [&](const End& each) {
              return each.node != *node && counts(each, channel, true);
@@ -431,6 +436,7 @@ const std::vector<ComponentId>& DependencyGraph::reach(std::span<const Component
       const auto& near = up ? channel.consumers : channel.producers;
       const auto own =
           std::find_if(near.begin(), near.end(), [&](const End& e) { return e.node == id; });
+      CULPRIT_ASSERT(own != near.end());  // a cause would be sought along a channel that is not its
       if (!counts(*own, channel, !up)) continue;
       passed = search_;
       for (const End& far : up ? channel.producers : channel.consumers) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/invariant.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -24,6 +25,8 @@ std::optional<Value> value_of(const Program& program, const Knowledge& knowledge
 
 // @pre both set one parameter of one component, in whatever way
 bool set_same_value(const Adaptation& a, const Adaptation& b, const Knowledge& knowledge) {
+  // Otherwise what a last resort holds would be set by another strategy.
+  CULPRIT_ASSERT(a.component == b.component && a.subject == b.subject);
   if (a.type != b.type) return false;
   if (a.type == AdaptationType::kChangeCommunication) return a.topic == b.topic;
   if (a.type != AdaptationType::kSetParameter) return false;

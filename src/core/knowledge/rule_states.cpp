@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/invariant.h"
+
 namespace culprit {
 
 RuleStates::RuleStates(const RuleSet& rules)
@@ -50,14 +52,16 @@ void RuleStates::find_touching() {
 }
 
 std::span<const RuleId> RuleStates::touching(ComponentId component) const {
+  CULPRIT_ASSERT(component.index + 1 < first_touching_.size());
   const std::size_t first = first_touching_[component.index];
   return std::span(touching_).subspan(first, first_touching_[component.index + 1] - first);
 }
 
 std::size_t RuleStates::place_of(StrategyId id) const {
   const auto& siblings = rules_[rules_[id].rule].strategies;
-  return static_cast<std::size_t>(std::find(siblings.begin(), siblings.end(), id) -
-                                  siblings.begin());
+  const auto found = std::find(siblings.begin(), siblings.end(), id);
+  CULPRIT_ASSERT(found != siblings.end());  // another strategy would count as tried
+  return static_cast<std::size_t>(found - siblings.begin());
 }
 
 bool RuleStates::is_tried(StrategyId id) const {
@@ -103,6 +107,8 @@ namespace {
 
 void change(std::vector<RuleId>& set, RuleId id, bool is_in) {
   const auto place = std::lower_bound(set.begin(), set.end(), id);
+  // A rule that is in it twice stays in it for ever: its components stay reserved.
+  CULPRIT_ASSERT(is_in == (place == set.end() || *place != id));
   if (is_in) {
     set.insert(place, id);
   } else {
@@ -122,8 +128,11 @@ void RuleStates::enter(RuleId id, RulePhase phase) {
   if (was == is) return;
   change(active_, id, is);
   const auto level = static_cast<std::size_t>(rules_[id].policies.criticality);
-  for (const ComponentId component : rules_[id].components)
-    failing_[component.index][level] += is ? 1 : -1;
+  for (const ComponentId component : rules_[id].components) {
+    int& rules = failing_[component.index][level];
+    rules += is ? 1 : -1;
+    CULPRIT_ASSERT(rules >= 0);  // it would look well while another rule fails
+  }
 }
 
 bool RuleStates::is_sick(ComponentId component, Criticality level, RuleId except) const {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/invariant.h"
 #include "plan/beside_exhausted.h"
 #include "plan/cost.h"
 #include "plan/ties.h"
@@ -57,6 +58,7 @@ void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
     const bool is_free = !candidate.excluded || candidate.excluded == Condition::kAffected;
     if (is_free && decision.chosen) candidate.excluded = Condition::kOneEach;
     if (!candidate.excluded) {
+      CULPRIT_ASSERT(!decision.chosen);  // two strategies for one failure
       decision.chosen = candidate.strategy;
       const auto& adapted = rules[candidate.strategy].components;
       affected.insert(affected.end(), adapted.begin(), adapted.end());

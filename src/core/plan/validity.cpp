@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "base/invariant.h"
 #include "diagnose/questions.h"
 #include "diagnose/timing.h"
 #include "knowledge/group_health.h"
@@ -408,6 +409,7 @@ bool is_excluded_alone(Candidate& candidate, const Knowledge& knowledge) {
     candidate.component = invalid->component;
     candidate.remark = std::move(invalid->reason);
   } else if (!withheld.empty()) {
+    CULPRIT_ASSERT(!strategy.components.empty());
     candidate.excluded = Condition::kWithheld;
     candidate.component = strategy.components.front();
     candidate.remark = withheld;

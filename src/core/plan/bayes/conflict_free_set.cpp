@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/invariant.h"
+
 namespace culprit::plan {
 
 using namespace diagnose;
@@ -143,7 +145,10 @@ class Greedy {
     return true;
   }
 
-  void choose(std::size_t c) { put(c, c); }
+  void choose(std::size_t c) {
+    CULPRIT_ASSERT(of_failure_[items_[c].failure] == kNone);  // two strategies for one failure
+    put(c, c);
+  }
   void put(std::size_t c, std::size_t holder) {
     is_chosen_[c] = holder != kNone;
     of_failure_[items_[c].failure] = holder;

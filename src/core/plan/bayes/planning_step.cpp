@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/invariant.h"
 #include "diagnose/questions.h"
 #include "plan/also_ended.h"
 #include "plan/ties.h"
@@ -321,6 +322,8 @@ void PlanningStep::ask_again() {
 }
 
 void PlanningStep::choose(const WeighedCandidate& weighed) {
+  CULPRIT_ASSERT(!weighed.candidate.excluded);
+  CULPRIT_ASSERT(!has_choice_[weighed.failure]);  // two strategies for one failure
   has_choice_[weighed.failure] = true;
   sides_.push_back({tries_[weighed.failure], {weighed.place}});
   using enum Exclusions::Disturbance;
@@ -429,9 +432,11 @@ std::vector<WeighedCandidate*> PlanningStep::weigh_together(
   std::vector<WeighedCandidate*> together;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::size_t place = begins[sides_.size() + i];
-    together.push_back(
-        *std::find_if(firsts[i].begin(), firsts[i].end(),
-                      [&](const WeighedCandidate* weighed) { return weighed->place == place; }));
+    const auto first =
+        std::find_if(firsts[i].begin(), firsts[i].end(),
+                     [&](const WeighedCandidate* weighed) { return weighed->place == place; });
+    CULPRIT_ASSERT(first != firsts[i].end());
+    together.push_back(*first);
   }
   return together;
 }
@@ -454,6 +459,8 @@ std::vector<Decision> PlanningStep::decisions() {
     }
     Decision& decision = found[at];
     const auto& excluded = weighed->candidate.excluded;
+    // One of another failure would be begun for it.
+    CULPRIT_ASSERT(knowledge_.rules[weighed->candidate.strategy].rule == decision.rule);
     if (!excluded) decision.chosen = weighed->candidate.strategy;
     decision.is_spent &= excluded == Condition::kTried || excluded == Condition::kInvalid;
     decision.candidates.push_back(std::move(weighed->candidate));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/invariant.h"
+
 namespace culprit::plan {
 
 double weight(Criticality level) { return static_cast<double>(1 << static_cast<int>(level)); }
@@ -9,6 +11,7 @@ double weight(Criticality level) { return static_cast<double>(1 << static_cast<i
 double time_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules) {
   const double cycles =
       static_cast<double>(effort.impact.count) + seconds(effort.latency) / seconds(rules.cycle);
+  CULPRIT_ASSERT(rules.heaviest.count > 0 && rules.cycle > Duration::zero());
   return weights.time * cycles / static_cast<double>(rules.heaviest.count);
 }
 
