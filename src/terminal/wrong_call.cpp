@@ -114,14 +114,14 @@ std::string_view advice_about(std::string_view option, std::string_view command)
       "leave it out, for culprit takes no arguments of ROS; see culprit run --help";
   constexpr std::string_view kList = "write silence list";
   constexpr std::string_view kWarnings = "write --fail-on warning";
-  constexpr std::string_view kPause =
+  constexpr std::string_view kLasting =
       "a pause lasts until culprit resume; culprit silence NAME --for 5min leaves one part alone";
   constexpr std::string_view kSends = "alerts only sends a test";
   constexpr std::string_view kWrites = "fmt writes the file unless --check or --diff is given";
   constexpr auto kAdvice = std::to_array<Advice>({{"--werror", "check", kWarnings},
                                                   {"--warnings-as-errors", "check", kWarnings},
                                                   {"-W", "check", kWarnings},
-                                                  {"--for", "pause", kPause},
+                                                  {"--for", "pause", kLasting},
                                                   {"--watch", "top", "leave it out: top is live"},
                                                   {"--output", "check", kFile},
                                                   {"-o", "check", kFile},

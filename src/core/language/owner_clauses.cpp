@@ -289,8 +289,8 @@ SystemdUnit OwnerClauses::unit(const syntax::Component& written) {
   SystemdUnit declared{name.text, written.is_users_unit, host(written)};
   if (!is_service_unit(declared.name)) {
     report(name, "this is no service of systemd",
-           unit.name.find_first_of("./@") == std::string::npos
-               ? "write " + unit.name + ".service"
+           declared.name.find_first_of("./@") == std::string::npos
+               ? "write " + declared.name + ".service"
                : "write its whole name, as systemctl list-units does: UNIT lidar.service");
   } else if (written.launch || written.is_respawned) {
     const std::string other = written.launch ? "LAUNCH" : "RESPAWNED";

@@ -14,15 +14,14 @@
 namespace culprit {
 namespace {
 
-using syntax::Adaptation;
 using enum AdaptationType;
 
-bool sets_parameter(const Adaptation& a) {
+bool sets_parameter(const syntax::Adaptation& a) {
   return a.type == kSetParameter || a.type == kIncreaseParameter || a.type == kDecreaseParameter ||
          a.type == kChangeCommunication;
 }
-bool ends_process(const Adaptation& a) { return a.type == kRedeploy || a.type == kStop; }
-bool changes_presence(const Adaptation& a) { return a.type == kStart || a.type == kStop; }
+bool ends_process(const syntax::Adaptation& a) { return a.type == kRedeploy || a.type == kStop; }
+bool changes_presence(const syntax::Adaptation& a) { return a.type == kStart || a.type == kStop; }
 bool lacks_launch(const culprit::Adaptation& adaptation, const RuleSet& rules) {
   const Component& component = rules[adaptation.component];
   if (adaptation.type == kRedeploy) return !component.can_start_again();
@@ -48,7 +47,7 @@ constexpr const char* kRestartInVain =
 
 // Why the two cannot be in one strategy; null if they can. Both are about one component, `first`
 // stands before.
-const char* contradiction(const Adaptation& first, const Adaptation& second) {
+const char* contradiction(const syntax::Adaptation& first, const syntax::Adaptation& second) {
   const auto are = [&](AdaptationType a, AdaptationType b) {
     return (first.type == a && second.type == b) || (first.type == b && second.type == a);
   };
@@ -83,24 +82,24 @@ const char* contradiction(const Adaptation& first, const Adaptation& second) {
 class Presence {
  public:
   // Why `next` cannot follow; null if it can.
-  const char* contradiction_of(const Adaptation& next) const {
+  const char* contradiction_of(const syntax::Adaptation& next) const {
     if (!changes_presence(next) || last_ == nullptr || next.type != last_->type) return nullptr;
     return next.type == kStart ? "this component is started already"
                                : "this component is stopped already";
   }
-  void add(const Adaptation& adaptation) {
+  void add(const syntax::Adaptation& adaptation) {
     if (!changes_presence(adaptation)) return;
     if (first_ == nullptr) first_ = &adaptation;
     last_ = &adaptation;
   }
   // The last one, if it takes the first one back; else null.
-  const Adaptation* taken_back() const {
+  const syntax::Adaptation* taken_back() const {
     return first_ != nullptr && first_->type != last_->type ? last_ : nullptr;
   }
 
  private:
-  const Adaptation* first_ = nullptr;
-  const Adaptation* last_ = nullptr;
+  const syntax::Adaptation* first_ = nullptr;
+  const syntax::Adaptation* last_ = nullptr;
 };
 
 // The adaptations of one component in a strategy so far. Keeps the first of several that contradict
@@ -108,14 +107,14 @@ class Presence {
 class Done {
  public:
   // Why the earliest of those that contradict `next` does so; null if none does.
-  const char* contradiction_of(const Adaptation& next) const {
+  const char* contradiction_of(const syntax::Adaptation& next) const {
     if (const char* why = presence_.contradiction_of(next)) return why;
-    const Adaptation* earliest = nullptr;
-    const auto consider = [&](const Adaptation* a) {
+    const syntax::Adaptation* earliest = nullptr;
+    const auto consider = [&](const syntax::Adaptation* a) {
       if (a != nullptr && (earliest == nullptr || a < earliest) && contradiction(*a, next))
         earliest = a;
     };
-    for (const Adaptation* a : of_type_) consider(a);
+    for (const syntax::Adaptation* a : of_type_) consider(a);
     const auto same_parameter = by_parameter_.find(next.subject.text);
     if (sets_parameter(next) && same_parameter != by_parameter_.end())
       consider(same_parameter->second);
@@ -123,9 +122,9 @@ class Done {
   }
 
   // They are parts of one vector, added in its order.
-  void add(const Adaptation& adaptation) {
+  void add(const syntax::Adaptation& adaptation) {
     presence_.add(adaptation);
-    const Adaptation*& first = of_type_[static_cast<std::size_t>(adaptation.type)];
+    const syntax::Adaptation*& first = of_type_[static_cast<std::size_t>(adaptation.type)];
     if (first == nullptr) first = &adaptation;
     if (sets_parameter(adaptation)) by_parameter_.emplace(adaptation.subject.text, &adaptation);
   }
@@ -133,15 +132,15 @@ class Done {
 
  private:
   Presence presence_;
-  std::array<const Adaptation*, static_cast<std::size_t>(kStartGroup) + 1> of_type_{};
-  std::map<std::string_view, const Adaptation*> by_parameter_;
+  std::array<const syntax::Adaptation*, static_cast<std::size_t>(kStartGroup) + 1> of_type_{};
+  std::map<std::string_view, const syntax::Adaptation*> by_parameter_;
 };
 
 // The state in which earlier steps left a component. A step may take back what one before it did.
 class Left {
  public:
   // Why `next` cannot follow; null if it can.
-  const char* contradiction_of(const Adaptation& next) const {
+  const char* contradiction_of(const syntax::Adaptation& next) const {
     if (process_ == kStop && next.type == kStop) return "this component is stopped already";
     if (process_ == kStop && next.type != kStart) return "an earlier step stopped the component";
     if (process_ != kStop && process_ && next.type == kStart)
@@ -149,7 +148,7 @@ class Left {
     if (lifecycle_ == next.type) return "this is done already";
     return nullptr;
   }
-  void add(const Adaptation& a) {
+  void add(const syntax::Adaptation& a) {
     if (a.type == kStart || a.type == kStop || a.type == kRedeploy) {
       process_ = a.type;
       lifecycle_.reset();
@@ -165,8 +164,8 @@ class Left {
 
 // Whether the one at `place` brings up again what an earlier one took down, and something else is
 // adapted between the two.
-bool takes_back(const std::vector<Adaptation>& all, std::size_t place) {
-  const Adaptation& up = all[place];
+bool takes_back(const std::vector<syntax::Adaptation>& all, std::size_t place) {
+  const syntax::Adaptation& up = all[place];
   if (up.type != kActivate && up.type != kStart) return false;
   bool is_between = false;
   for (std::size_t i = place; i-- > 0;) {
