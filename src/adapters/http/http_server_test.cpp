@@ -60,7 +60,11 @@ std::unique_ptr<HttpServer> start(Hub* hub = nullptr, bool is_local = true) {
 }
 
 struct WebServer : testing::Test {
-  httplib::Client client() const { return httplib::Client("127.0.0.1", server->port()); }
+  httplib::Client client() const {
+    httplib::Client patient("127.0.0.1", server->port());
+    patient.set_read_timeout(60);
+    return patient;
+  }
   const httplib::Headers with_token = {{"Authorization", std::string("Bearer ") + kToken}};
   httplib::Headers with(const std::string& name, const std::string& value) const {
     httplib::Headers headers = with_token;
