@@ -224,7 +224,8 @@ void Analyzer::note_ready(RuleId id, const Attempt& attempt) {
 void Analyzer::watch_failing(RuleId id, Time now) {
   const RuleState& state = knowledge_.states[id];
   if (is_gone(id, now)) {
-    if (const auto tried = std::exchange(write_.states.state(id).tried_alone, std::nullopt))
+    const auto tried = std::exchange(write_.states.state(id).tried_alone, std::nullopt);
+    if (tried && !couplings_.is_changed_since(id, tried->effective))
       note_latency(id, tried->effective);
     if (const auto cleared_by = std::exchange(write_.states.state(id).cleared_by, std::nullopt)) {
       resolve(id, {id, FailureResolved::How::kByStrategy, cleared_by->strategy, {}}, now);
@@ -341,7 +342,8 @@ void Analyzer::succeed(RuleId id, Time now) {
     write_.latencies.suspect(id, state.detection.trigger_since - before->effective);
   } else if (caused && !attempt.is_ambiguous) {
     note_latency(id, attempt.effective);
-  } else if (!caused && !is_suspended && before) {
+  } else if (!caused && !is_suspended && before &&
+             !couplings_.is_changed_since(id, before->effective)) {
     note_latency(id, before->effective);  // it helped after all, and its rule showed that late
   }
   state.tried_alone.reset();

@@ -262,12 +262,12 @@ bool CouplingWatch::is_only_cause(StrategyId strategy, RuleId effect, Time since
 bool CouplingWatch::is_echo(const Attempt& attempt) const {
   const RuleId rule = knowledge_.rules[attempt.strategy].rule;
   const Sources sources(knowledge_, rule);
-  const Time detected = knowledge_.states[rule].failing_since;
+  const Time began = diagnose::onset_of(rule, knowledge_).latest;
   const Duration latency = knowledge_.signals.latency(rule);
   return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
-    // A failure that was detected only after the change cannot be about to clear with it.
+    // A failure that began only after the change cannot be about to clear with it.
     return knowledge_.rules[change.strategy].rule != rule &&
-           detected < later(change.effective, latency) &&
+           began < later(change.effective, latency) &&
            shown_after_all(change, rule) > attempt.first_change &&
            is_rival(knowledge_, change.strategy, sources, rule);
   });
@@ -299,6 +299,23 @@ bool CouplingWatch::is_unaided(RuleId rule) const {
     const auto& attempt = knowledge_.states[id].attempt;
     return attempt && may_have_helped(attempt->strategy, attempt->first_change);
   });
+}
+
+bool CouplingWatch::is_changed_since(RuleId rule, Time since) const {
+  const Sources sources(knowledge_, rule);
+  const auto may_have_helped = [&](StrategyId strategy) {
+    const Strategy& other = knowledge_.rules[strategy];
+    return other.rule != rule &&
+           (sources.have(other.components) || knowledge_.coincidences.coincide(other.rule, rule) ||
+            knowledge_.couplings.of(other.rule, rule).cleared > 0);
+  };
+  const bool has_ended = std::ranges::any_of(changes_, [&](const Change& change) {
+    return change.end >= since && may_have_helped(change.strategy);
+  });
+  return has_ended || std::ranges::any_of(knowledge_.states.active(), [&](RuleId id) {
+           const auto& attempt = knowledge_.states[id].attempt;
+           return attempt && attempt->first_change != kNever && may_have_helped(attempt->strategy);
+         });
 }
 
 // No query is about a time before all of these: the last `kPatience`, the first open question, and

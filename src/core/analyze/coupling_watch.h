@@ -63,6 +63,10 @@ class CouplingWatch {
   // was no trouble upstream over meanwhile?
   bool is_unaided(RuleId rule) const;
 
+  // Has a strategy of another rule changed something since then that can have cleared the failure of `rule`: upstream of
+  // it, or for a failure that coincides with it, or was seen to clear it?
+  bool is_changed_since(RuleId rule, Time since) const;
+
   // culprit did not watch for a while: failures that cleared meanwhile count as coupled to none.
   void restart() { questions_.clear(); }
 

@@ -14,13 +14,6 @@ constexpr double kCoupled = 0.5;
 
 std::size_t at(Symptom symptom) { return static_cast<std::size_t>(symptom); }
 
-// Where its failure is. A rule that only reports waits for nothing, and nothing waits until it fires. But one that
-// cleared may have explained others.
-std::vector<ComponentId> places_of(RuleId rule, const Knowledge& knowledge) {
-  if (knowledge.rules[rule].components.empty()) return {};
-  return touched_by(rule, knowledge);
-}
-
 // Since when the rule does not show its failure; kLongAgo: it does, or never did. An exhausted failure
 // that its trigger does not show any more is about to clear.
 Time gone_since(RuleId rule, const Knowledge& knowledge) {
@@ -95,7 +88,7 @@ void Awaited::collect(Time latest_onset) {
     const Duration within = evidence_within(rule, latest_onset, knowledge_);
     if (within == Duration::zero()) continue;
     const bool is_gone = cleared_lately(rule, knowledge_);
-    for (const ComponentId c : places_of(rule, knowledge_)) {
+    for (const ComponentId c : spreads_from(rule, knowledge_)) {
       const auto scc = knowledge_.graph.scc_of(c);
       if (!scc) continue;
       Place& place = places_[*scc];
@@ -224,7 +217,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     const Time until = fades(failure, past, passed_on);
     if (until > found.until) found = {until, past.rule.value_or(failure), true, past.component};
   };
-  for (const ComponentId c : places_of(failure, knowledge_)) {
+  for (const ComponentId c : touched_by(failure, knowledge_)) {
     const auto scc = knowledge_.graph.scc_of(c);
     if (!scc) continue;
     const Place& place = places_[*scc];
@@ -245,7 +238,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
       if (is_its_own || is_circle_[*scc]) fade(past_[p], is_its_own ? Duration{} : passing);
     });
   }
-  const Awaiting learned = is_value ? Awaiting{} : of_learned_supplier(failure);
+  const Awaiting learned = of_learned_supplier(failure);
   return learned.until > found.until ? learned : found;
 }
 
@@ -253,7 +246,8 @@ Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {
   // One reading of a common monitor shows both values: it decides whether the failure settles
   // (Settling).
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
-  const bool has_echo = !is_value || knowledge_.latencies.is_late(failure);
+  const bool has_echo = !is_value || knowledge_.latencies.is_late(failure) ||
+                        counts_events(failure, knowledge_.rules);
   const Onset onset = onset_of(failure, knowledge_);
   // It may have been as bad until its rule cleared: a silence shows at once that it is over.
   const bool ends_late = !is_value && past.symptom == Symptom::kValue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/questions.h"
 #include "knowledge/awaited_container.h"
 
 namespace culprit::diagnose {
@@ -31,7 +32,7 @@ bool is_known_down(RuleId rule, const Knowledge& knowledge) {
 bool is_about_hang(RuleId rule, const Knowledge& knowledge) {
   const auto begins_hung_anew = [&](const Adaptation& a) {
     return (a.type == AdaptationType::kRestart || launches(a)) &&
-           knowledge.components[a.component].hangs();
+           (knowledge.components[a.component].hangs() || is_overdue(a.component, knowledge));
   };
   return std::ranges::any_of(knowledge.rules[rule].strategies, [&](StrategyId s) {
     return std::ranges::any_of(knowledge.rules[s].adaptations, begins_hung_anew);

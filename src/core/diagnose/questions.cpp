@@ -129,7 +129,10 @@ Questions questions_about(RuleId failure, std::span<const std::optional<TroubleS
   const Time onset = onset_of(failure, knowledge).latest;
   std::vector<ComponentId> silent;
   for (const ComponentId c : knowledge.graph.upstream(knowledge.rules[failure].components)) {
-    if (!troubles[c.index] && can_be_asked(c, knowledge)) silent.push_back(c);
+    // Only its answer tells whether a silent one hangs, or is an effect.
+    const auto& trouble = troubles[c.index];
+    const bool is_known = trouble && trouble->trouble != Trouble::kSilent;
+    if (!is_known && can_be_asked(c, knowledge)) silent.push_back(c);
   }
   if (silent.empty()) return questions;
   const std::vector<Time> signs = last_signs(knowledge);

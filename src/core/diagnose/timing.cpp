@@ -188,6 +188,13 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
   return std::min(longest, kLongestEvidence);
 }
 
+bool counts_events(RuleId rule, const RuleSet& rules) {
+  return std::ranges::any_of(rules[rule].inputs, [&](InputId id) {
+    const Kind kind = rules[id].kind;
+    return kind == Kind::kGoals || kind == Kind::kLogs || kind == Kind::kLoss;
+  });
+}
+
 Duration clears_within(RuleId failure, const Knowledge& knowledge) {
   return knowledge.signals.latency(failure) + knowledge.latencies.reckon_with(failure) +
          held_at_most(failure, knowledge);

@@ -82,6 +82,9 @@ bool may_fire(RuleId rule, const Knowledge& knowledge);
 // usually do, its trigger is unknown, it cannot fire, or its nodes must be asked.
 Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge);
 
+// Does the rule count events over a window? Those of a cause that is gone count until it has passed.
+bool counts_events(RuleId rule, const RuleSet& rules);
+
 // How long the failure may still be shown after its cause has cleared: the readings, the lateness
 // and the HOLD of its rule.
 Duration clears_within(RuleId failure, const Knowledge& knowledge);

@@ -320,12 +320,20 @@ std::optional<Governor::Held> Governor::restraint_on_all(Time now) const {
   return limits_.on_all(now);
 }
 
+std::optional<Governor::Held> Governor::doubt_of_storm(RuleId failure) const {
+  const auto& doubt = storm_.doubt();
+  if (!doubt || std::ranges::find(doubt->failures, failure) == doubt->failures.end())
+    return std::nullopt;
+  return Held{Restraint::kStorm, doubt->reason, storm_.next_deadline()};
+}
+
 std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) const {
   if (auto held = restraint_by_person(id)) return held;
   if (auto doubt = doubt_of_identity(knowledge_.rules[id], knowledge_))
     return Held{Restraint::kIdentity, std::move(*doubt), kNever};
   if (auto reason = launch_of_the_unseen(knowledge_.rules[id], knowledge_))
     return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
+  if (auto held = doubt_of_storm(knowledge_.rules[id].rule)) return held;
   if (auto held = departure(knowledge_.rules[id], now)) return held;
   if (auto held = container_to_come(knowledge_.rules[id])) return held;
   if (auto driver = driver_to_come(knowledge_.rules[id], knowledge_, now))

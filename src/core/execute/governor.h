@@ -128,6 +128,7 @@ class Governor {
   std::optional<std::string> objection_by_when(const Strategy& strategy) const;
   std::optional<Held> restraint_by_person(StrategyId strategy) const;
   std::optional<Held> departure(const Strategy& strategy, Time now) const;
+  std::optional<Held> doubt_of_storm(RuleId failure) const;
   std::optional<Held> container_to_come(const Strategy& strategy) const;
   bool stays_anything_down() const;
   std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;

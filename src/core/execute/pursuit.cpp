@@ -159,7 +159,9 @@ bool Pursuit::is_lost(const Knowledge& knowledge) const {
   const bool is_of_process =
       std::holds_alternative<GoneGoal>(goal_) || std::holds_alternative<PresentGoal>(goal_);
   const ComponentState& state = knowledge.components[component_];
-  return !is_of_process && state.alive == false && !(is_last_resort_ && state.may_still_obey());
+  const bool is_still_to_be_asked =
+      is_last_resort_ && state.may_still_obey() && !has_changed_anything();
+  return !is_of_process && state.alive == false && !is_still_to_be_asked;
 }
 
 // A node that ends politely answers nothing while it does so. Only one that had not answered before

@@ -4,7 +4,10 @@
 #include <iterator>
 #include <utility>
 
+#include "base/sort_unique.h"
+#include "diagnose/awaited.h"
 #include "diagnose/imminent.h"
+#include "diagnose/touched.h"
 #include "diagnose/trouble.h"
 
 namespace culprit {
@@ -19,7 +22,10 @@ StormWatch::StormWatch(const Knowledge& knowledge, EventLog& events, Options opt
 void StormWatch::advance(Time now) {
   if (options_.share <= 0) return;
   note(knowledge_.events);
-  if (!std::exchange(has_news_, false) && !storm_) return;
+  const bool is_due = look_again_ <= now;
+  if (!std::exchange(has_news_, false) && !storm_ && !is_due) return;
+  look_again_ = kNever;
+  doubt_.reset();
   if (auto seen = look(now)) {
     if (!storm_) events_.tell(now, StormBegan{seen->restraint, seen->reason});
     storm_ = std::move(seen);
@@ -64,10 +70,15 @@ std::optional<StormWatch::Storm> StormWatch::look(Time now) {
   }
   if (knowledge_.states.active().size() + lately_.size() < static_cast<std::size_t>(options_.least))
     return {};
-  std::size_t ill = ill_roots(std::vector<bool>(all));
-  if (is_much(ill)) ill = ill_roots(all_suspects());
-  if (is_much(ill))
-    return Storm{Restraint::kStorm, count(ill) + " failed at once, and none explains the others"};
+  if (!is_much(ill_roots(std::vector<bool>(all)).components)) return std::nullopt;
+  std::vector<bool> suspects = all_suspects();
+  IllRoots ill = ill_roots(suspects);
+  if (!is_much(ill.components)) return std::nullopt;
+  add_awaited(suspects);
+  const std::string many = count(ill.components) + " failed at once, and ";
+  if (is_much(ill_roots(suspects).components))
+    return Storm{Restraint::kStorm, many + "none explains the others"};
+  doubt_ = Doubt{std::move(ill.failures), many + "a rule that may still fire may explain them"};
   return std::nullopt;
 }
 
@@ -119,12 +130,25 @@ std::vector<bool> StormWatch::all_suspects() const {
   return suspects;
 }
 
+// Where a rule can still fire as the cause of a failure: until then, their number proves nothing.
+void StormWatch::add_awaited(std::vector<bool>& suspects) {
+  const diagnose::Awaited awaited(knowledge_, knowledge_.states.active());
+  for (const RuleId failure : knowledge_.states.active()) {
+    const auto found = awaited.of(failure);
+    if (!found || found->is_echo) continue;
+    for (const ComponentId component : diagnose::spreads_from(found->because, knowledge_))
+      suspects[component.index] = true;
+    look_again_ = std::min(look_again_, found->until);
+  }
+}
+
 // Components that a failing rule is about, or one whose failure began a moment ago and is gone, and that
-// nothing upstream explains.
-std::size_t StormWatch::ill_roots(const std::vector<bool>& suspects) const {
+// nothing upstream explains; and these failures.
+StormWatch::IllRoots StormWatch::ill_roots(const std::vector<bool>& suspects) const {
   std::vector<RuleId> failures = knowledge_.states.active();
   std::ranges::copy_if(lately_, std::back_inserter(failures),
                        [&](RuleId id) { return !knowledge_.states.is_active(id); });
+  IllRoots found;
   std::vector<ComponentId> roots;
   for (const RuleId id : failures) {
     for (const ComponentId component : knowledge_.rules[id].components) {
@@ -135,12 +159,14 @@ std::size_t StormWatch::ill_roots(const std::vector<bool>& suspects) const {
             return other != component &&
                    (is_dead_[other.index] || suspects[other.index] || is_or_was_ill(other, id));
           });
-      if (!is_explained) roots.push_back(component);
+      if (is_explained) continue;
+      roots.push_back(component);
+      if (found.failures.empty() || found.failures.back() != id) found.failures.push_back(id);
     }
   }
-  std::sort(roots.begin(), roots.end());
-  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
-  return roots.size();
+  sort_unique(roots);
+  found.components = roots.size();
+  return found;
 }
 
 // The death of a component is no riddle; it is to be brought back.

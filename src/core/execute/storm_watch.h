@@ -2,12 +2,14 @@
 //
 // A storm: many components have failed that nothing upstream explains. (NodeHealthCheck's
 // minHealthy, with the dependency graph taken into account: a dead camera with all its consumers is
-// no storm, also before its own alarm; nor are exited processes, whose cause is clear.) Failures that
+// no storm, also before its own alarm; nor are exited processes, whose cause is clear; nor failures that wait for a rule
+// that can still fire.) Failures that
 // began within `together` count together, although some may have been repaired already. A graph in doubt:
 // nodes vanished from the graph although their processes run, or those of other computers do not answer
 // although these are reachable. Then the network is more likely at fault than all of the nodes.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,14 +40,26 @@ class StormWatch {
   void advance(Time now);
   void note(std::span<const Event> events) { has_news_ |= !events.empty(); }
   const std::optional<Storm>& storm() const { return storm_; }
-  Time next_deadline() const { return storm_ ? over_ : kNever; }
+
+  // Failures that are a storm unless a rule fires that still can: nothing is done for them until then.
+  struct Doubt {
+    std::vector<RuleId> failures;
+    std::string reason;
+  };
+  const std::optional<Doubt>& doubt() const { return doubt_; }
+  Time next_deadline() const { return std::min(storm_ ? over_ : kNever, look_again_); }
 
  private:
   std::optional<Storm> look(Time now);
   void look_for_dead();
   void look_for_failures(Time now);
   std::vector<bool> all_suspects() const;
-  std::size_t ill_roots(const std::vector<bool>& suspects) const;
+  void add_awaited(std::vector<bool>& suspects);
+  struct IllRoots {
+    std::size_t components = 0;
+    std::vector<RuleId> failures{};
+  };
+  IllRoots ill_roots(const std::vector<bool>& suspects) const;
   bool is_or_was_ill(ComponentId component, RuleId except) const;
   bool has_clear_cause(RuleId failure, ComponentId component) const;
   bool is_much(std::size_t components) const;
@@ -54,8 +68,10 @@ class StormWatch {
   EventLog& events_;
   Options options_;
   std::optional<Storm> storm_;
+  std::optional<Doubt> doubt_;
   Time over_ = kNever;
   bool has_news_ = false;
+  Time look_again_ = kNever;  // when a failure has waited long enough for a cause upstream
   // By component: the operating system said that its process is gone, and it was not well since.
   std::vector<bool> is_dead_;
   // By rule: of a failure that began within `together`, whether it is there still or not.

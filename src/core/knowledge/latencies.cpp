@@ -143,7 +143,7 @@ void Latencies::weigh(double spreading) {
 }
 
 void Latencies::cleared(RuleId rule, Duration after) {
-  after = std::max(after, Duration::zero());
+  after = std::clamp<Duration>(after, Duration::zero(), kMostPatience);
   Learned learned = learned_[rule.index];
   const bool is_first = learned.count == 0;
   const Duration least = is_first ? after : std::min(learned.range.least, after);

@@ -356,15 +356,23 @@ void PlanningStep::select(Criticality level) {
 
   const std::vector<WeighedCandidate*> chosen = weigh_together(open, chosen_together(open));
   for (WeighedCandidate* weighed : chosen) {
-    if (const auto other = done_for_another(*weighed, chosen)) {
-      const RuleId rule = knowledge_.rules[*other].rule;
-      exclude(*weighed, {Condition::kSettling, likely_.likeliest_component(rule), rule});
-    } else {
+    if (const auto other = done_for_another(*weighed, chosen))
+      leave_to(knowledge_.rules[*other].rule, weighed->failure, open);
+    else
       choose(*weighed);
-    }
   }
   for (WeighedCandidate* weighed : open) {
-    if (std::find(chosen.begin(), chosen.end(), weighed) == chosen.end()) is_taken(*weighed);
+    const bool is_chosen = std::find(chosen.begin(), chosen.end(), weighed) != chosen.end();
+    if (!is_chosen && !weighed->candidate.excluded) is_taken(*weighed);
+  }
+}
+
+// Nothing is done for `failure` while the strategy of the other rule may clear it.
+void PlanningStep::leave_to(RuleId other, std::size_t failure,
+                            const std::vector<WeighedCandidate*>& open) const {
+  for (WeighedCandidate* weighed : open) {
+    if (weighed->failure == failure)
+      exclude(*weighed, {Condition::kSettling, likely_.likeliest_component(other), other});
   }
 }
 

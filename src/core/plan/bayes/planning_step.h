@@ -45,6 +45,8 @@ class PlanningStep {
                                                 const std::vector<WeighedCandidate*>& chosen) const;
   std::optional<StrategyId> done_for_another(const WeighedCandidate& weighed,
                                              const std::vector<WeighedCandidate*>& chosen) const;
+  void leave_to(RuleId other, std::size_t failure,
+                const std::vector<WeighedCandidate*>& open) const;
   bool is_taken(WeighedCandidate& weighed) const;
   std::vector<Decision> decisions();
   bool is_before(const WeighedCandidate& a, const WeighedCandidate& b) const;

@@ -208,6 +208,19 @@ bool ReasonsToWait::opens_way_for(StrategyId id, std::size_t cause) const {
          });
 }
 
+// Does the governor hold back all that is left to do for it, and something only until an answer is there?
+bool ReasonsToWait::is_held_for_a_moment(std::size_t cause) const {
+  constexpr Duration kMoment = std::chrono::seconds(2);
+  if (causes_[cause].kind != CauseNode::Kind::kFailure) return false;
+  bool is_any = false;
+  for (const StrategyChance& each : likely_.chances(cause)) {
+    if (each.is_out()) continue;
+    if (!each.is_withheld) return false;
+    is_any |= knowledge_.withheld[each.strategy.index].until <= later(knowledge_.now, kMoment);
+  }
+  return is_any;
+}
+
 // Does it wait for a cause that more likely explains it?
 bool ReasonsToWait::exclude_effect(WeighedCandidate& weighed) const {
   const StrategyId strategy = weighed.candidate.strategy;
@@ -231,7 +244,9 @@ bool ReasonsToWait::exclude_effect(WeighedCandidate& weighed) const {
   // fired yet is waited for.
   for (const std::size_t j : causes_.loops()[causes_.loop_of(weighed.failure)]) {
     const bool is_likelier = parts(diagnosis_.of(j)) > parts(diagnosis_.of(weighed.failure));
-    if (causes_[j].kind != CauseNode::Kind::kImminent || !is_likelier) continue;
+    const bool comes_next =
+        causes_[j].kind == CauseNode::Kind::kImminent || is_held_for_a_moment(j);
+    if (!comes_next || !is_likelier) continue;
     exclude_for(weighed, j);
     return true;
   }

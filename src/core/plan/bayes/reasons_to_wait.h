@@ -45,6 +45,7 @@ class ReasonsToWait {
   bool is_sure(RuleId rule) const;
   bool ends_wait_of(StrategyId strategy, std::size_t cause) const;
   bool opens_way_for(StrategyId strategy, std::size_t cause) const;
+  bool is_held_for_a_moment(std::size_t cause) const;
   bool is_quicker_than_repair(StrategyId strategy, std::size_t cause) const;
 
   const Knowledge& knowledge_;
