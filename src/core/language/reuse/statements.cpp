@@ -79,7 +79,7 @@ bool comma(LineReader& read, Scanner& s) {
   if (!is_argument) return read.expect_symbol(s, ",");
   const Name argument = s.ahead().next_name();
   return read.fail(Code::kSyntax, argument.span, "expected ',', not '" + argument.text + "'",
-                   "write a ',' in front of it", Edit{{s.taken(), s.taken()}, ","});
+                   "write a ',' in front of it", Edit{{next.span.begin, next.span.begin}, ", "});
 }
 
 // "(a, b)": `read_one` takes one of them, and gives false if it cannot.
