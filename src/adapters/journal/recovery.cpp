@@ -218,6 +218,13 @@ Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& 
   return known;
 }
 
+// A person who stops culprit may stop the robot as well, and another culprit repairs it: a recovery
+// after that proves nothing.
+void forget_pending_outcomes(std::vector<Event>& past) {
+  std::erase_if(
+      past, [](const Event& event) { return std::holds_alternative<OutcomePending>(event.what); });
+}
+
 }  // namespace
 
 Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, const RuleSet& rules,
@@ -265,20 +272,15 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
   const bool is_recent = trail.latest() <= now.robot && now.robot - trail.latest() <= kExpected;
   if (!is_recent || recovery.is_other_robot() || trail.was_succeeded_by(manager_before))
     recovery.known_robot.is_whole = false;
-  recovery.is_paused = trail.is_paused();
-  recovery.is_dry_run = trail.is_dry_run();
   const Time robot_then = Time(Duration(integer_of(begin, "start")));
   const Duration shift =
       recovery.was_other_boot ? shift_of_clock(**last, robot_then, now) : Duration::zero();
   recovery.past = still_counting(
       recovery.is_other_robot() ? of_people(trail.past(), shift) : trail.past(), now.robot, rules);
-  // A person who stops culprit may stop the robot as well, and another culprit repairs it: a
-  // recovery after that proves nothing.
-  if (recovery.was_stopped || trail.was_succeeded_by(manager_before)) {
-    std::erase_if(recovery.past, [](const Event& event) {
-      return std::holds_alternative<OutcomePending>(event.what);
-    });
-  }
+  if (recovery.was_stopped || trail.was_succeeded_by(manager_before))
+    forget_pending_outcomes(recovery.past);
+  recovery.is_paused = trail.is_paused();
+  recovery.is_dry_run = trail.is_dry_run();
   recovery.interrupted = std::move(trail).open(now.robot, manager_before);
   for (const Interrupted& each : recovery.interrupted)
     CULPRIT_ASSERT(each.adaptations_done <= rules[each.strategy].adaptations.size());

@@ -67,7 +67,7 @@ class Survey {
   Expected<MessageLibrary> find_service_type(const std::string& service);
 
  private:
-  // What others publish on a topic.
+  // The publishers of others on a topic.
   struct Offer {
     std::string publisher;  // the first node
     std::string type;       // of that one

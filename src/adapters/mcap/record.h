@@ -1,5 +1,5 @@
 // The records of an MCAP file (mcap.dev/spec, version 0), once for its reader and its writer: their
-// codes, and the fields that both know. What only one of them knows stands with that one.
+// codes, and the fields that both know. Each of them keeps by itself what the other does not know.
 #pragma once
 
 #include <cstdint>

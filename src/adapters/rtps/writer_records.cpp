@@ -22,7 +22,7 @@ void WriterRecords::wrote(const Guid& guid, std::int64_t sequence, Clock::time_p
   writer.heard = now;
 }
 
-// What a reliable reader keeps for it: a sample of one byte needs a description, too.
+// Memory that a reliable reader keeps for it: a sample of one byte needs a description, too.
 std::size_t WriterRecords::kept_for(const Assembly& sample) {
   constexpr std::size_t kDescription = 512;  // bytes
   return sample.size + kDescription;

@@ -37,7 +37,7 @@ class DueVerdicts {
   DueVerdicts(const Knowledge& knowledge, const Detector& detector)
       : knowledge_(knowledge), detector_(detector) {}
 
-  // Of an attempt whose adaptations took effect. It moves when it becomes known how long a signal
+  // The deadline of an attempt whose adaptations took effect. It moves when it becomes known how long a signal
   // takes to show a change.
   Time deadline(const Attempt& attempt) const;
   // @pre its deadline is set

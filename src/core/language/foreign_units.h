@@ -19,7 +19,7 @@ std::optional<Diagnostic> unit_behind_blank(const Token& number, std::string_vie
 std::optional<Diagnostic> per_second(const syntax::Expression& left, const Token& op,
                                      const Scanner& scanner);
 
-// What is meant by a number with a unit that no duration has: "5Hz", "2GB", "30deg".
+// The meaning of a number with a unit that no duration has: "5Hz", "2GB", "30deg".
 struct UnitSlip {
   std::string remedy;
   std::optional<Edit> fix{};

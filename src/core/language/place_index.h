@@ -76,7 +76,7 @@ class PlaceIndex {
 
 inline std::size_t name_hash(std::string_view name) { return std::hash<std::string_view>()(name); }
 
-// Of two parts of what an entry is found by.
+// The hash of two parts of a key.
 inline std::size_t mixed_hash(std::size_t hash, std::size_t more) {
   hash = (hash ^ more) * 0x9E3779B97F4A7C15;
   return hash ^ (hash >> 29);

@@ -1,4 +1,4 @@
-// What was learned, as people and the fleet change it.
+// Learned numbers, as people and the fleet change them.
 #pragma once
 
 #include <optional>

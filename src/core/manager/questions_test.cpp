@@ -44,7 +44,7 @@ struct Navigation {
   TestRobot robot;
 };
 
-// What the last decision about the failure says that culprit asked, and how it was answered.
+// The questions of the last decision about the failure, with their answers.
 std::vector<std::string> answers_in(const TestRobot& robot) {
   std::vector<std::string> answers;
   const auto read = [&](const auto& what) {

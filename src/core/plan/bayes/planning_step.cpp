@@ -367,7 +367,7 @@ void PlanningStep::select(Criticality level) {
   }
 }
 
-// Nothing is done for `failure` while the strategy of the other rule may clear it.
+// The strategy of the other rule may clear `failure`: it waits for that.
 void PlanningStep::leave_to(RuleId other, std::size_t failure,
                             const std::vector<WeighedCandidate*>& open) const {
   for (WeighedCandidate* weighed : open) {
