@@ -171,7 +171,7 @@ export function BeliefsPage() {
                 <th scope="col">strategy</th>
                 <th scope="col">prior</th>
                 <th scope="col">learned mean</th>
-                <th scope="col">90 % interval</th>
+                <th scope="col">90 % range</th>
                 <th scope="col" class="interval-head">0 % to 100 %</th>
                 <th scope="col">learned from</th>
               </tr>
