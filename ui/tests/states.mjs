@@ -217,6 +217,7 @@ async function callsNoPastWell(page, server) {
   const explanation = page.getByRole('region', { name: 'Explanation' })
   await explanation.getByRole('heading', { name: 'SegmentationBad is blind' }).waitFor()
   const slider = page.getByRole('slider', { name: 'Moment to look at' })
+  await page.waitForFunction(() => Number(document.querySelector('input.scrub').max) > 100) // the state has come
   await slider.evaluate((input) => {
     input.value = String(Number(input.max) - 5) // s
     input.dispatchEvent(new Event('input', { bubbles: true }))
