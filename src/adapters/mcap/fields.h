@@ -39,7 +39,7 @@ class Fields {
   template <class Record>
   Record read() {
     Record record;
-    Record::visit(record, [this](auto&... fields) { (take(fields), ...); });
+    Record::visit(record, [this](auto&... fields) { (this->take(fields), ...); });
     return record;
   }
 
