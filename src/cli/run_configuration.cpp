@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -145,11 +146,15 @@ int line_of_open_value(const std::string& text) {
   return 0;
 }
 
+Error given_twice(const ConfigurationFile& file, const std::string& key) {
+  return Error{file.place(key) + key + " is given twice; keep one"};
+}
+
 // The words that stand for one line of the file. Errors: its value is wrong.
 Expected<std::vector<std::string>> words_of_item(const ConfigurationFile& file,
                                                  const CLI::ConfigItem& item, CLI::Option& option) {
   if (item.inputs.size() > 1 && option.get_items_expected_max() <= 1)
-    return Error{file.place(item.name) + item.name + " is given twice; keep one"};
+    return given_twice(file, item.name);
   const std::string& value = item.inputs.empty() ? std::string() : item.inputs.front();
   if (is_flag(option)) {
     if (value == "false") return std::vector<std::string>{};
@@ -190,6 +195,7 @@ Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, 
     if (const std::string key = key_of(*option); !key.empty()) known.push_back(key);
   }
   std::vector<std::string> words;
+  std::set<std::string> given;
   for (const CLI::ConfigItem& item : items) {
     if (!item.parents.empty())
       return Error{file.place("[" + item.parents.front() + "]") +
@@ -197,6 +203,8 @@ Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, 
     const bool is_known = std::find(known.begin(), known.end(), item.name) != known.end();
     if (!is_known) return unknown_key(file, item.name, known);
     CLI::Option* option = run.get_option(item.name == kRulesKey ? "RULES" : "--" + item.name);
+    const bool is_first = given.insert(item.name).second;
+    if (!is_first && option->get_items_expected_max() <= 1) return given_twice(file, item.name);
     if (option->count() > 0) continue;  // by the command line or the environment
     auto more = words_of_item(file, item, *option);
     if (!more) return more;
