@@ -35,7 +35,7 @@ test:
 # is wrong with for ten minutes each, recordings with 100 planted faults, 500 kills of culprit, drills of three robots and drills that are killed, 67 attacks 20 times each, 1,000 robots of a fleet, 100 random sequences of faults for each kind of
 # owner, 40 changes of the core that its tests should notice, the laboratory and the commands under the address sanitizer, all but robots, laboratory and
 # commands under the thread sanitizer, each file compiled by itself, each fuzzer for five minutes, every figure in the documents that its command makes again, the commands of the tutorial,
-# Debian packages that are installed, upgraded and removed, those for arm64 under qemu, and clang-tidy on every file.
+# Debian packages that are installed, upgraded and removed, and clang-tidy on every file.
 soak:
 	@scripts/install-dependencies --tests
 	cmake --preset release
@@ -66,8 +66,6 @@ soak:
 	scripts/arm64
 	scripts/install-dependencies --packages
 	scripts/test-packages
-	scripts/install-dependencies --packages-arm64
-	scripts/test-packages --arch arm64
 	scripts/tidy
 
 # The documents as a site that can be searched: build/docs/index.html. It needs no network.
