@@ -72,7 +72,7 @@ TEST_F(Init, ACommandWithARelativePathKeepsItsFolder) {
 
 // Each run has another one, and an update would replace every component.
 TEST_F(Init, TheLogFolderOfOneLaunchIsNoPartOfAStart) {
-  setenv("ROS_LOG_DIR", "/root/.ros/log/2026-11-30-20-03-11-512345-rover-4711", 1);
+  setenv("ROS_LOG_DIR", "/home/robot/.ros/log/2026-11-30-20-03-11-512345-rover-4711", 1);
   setenv("ROS_HOME", "/data/ros", 1);
   const TestProgram camera(world, {"sunset-node", "camera"});
   unsetenv("ROS_LOG_DIR");
