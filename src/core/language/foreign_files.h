@@ -8,8 +8,9 @@
 
 namespace culprit {
 
-// One mistake, one message: leaves one error about a file that is JSON, YAML, XML, Python, a test of rules, a configuration or binary,
-// and one about a comment of several lines or a block in braces. Keeps the other `diagnostics`.
+// One mistake, one message. It leaves one error about a file of another kind: JSON, YAML, XML, Python, a configuration,
+// a test of rules, or binary. It also leaves one about a comment of several lines, and about a block in braces. The other
+// `diagnostics` stay.
 void condense(const Source& source, std::vector<Diagnostic>& diagnostics);
 
 }  // namespace culprit
