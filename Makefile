@@ -55,8 +55,8 @@ soak:
 	cmake --build --preset asan-soak --parallel $(JOBS)
 	ctest --preset asan-soak
 	cmake --preset tsan
-	cmake --build --preset tsan-soak --parallel $(JOBS)
-	ctest --preset tsan-soak
+	cmake --build --preset tsan --parallel $(JOBS)
+	ctest --preset tsan
 	cmake --preset walls
 	cmake --build --preset walls-soak --parallel $(JOBS)
 	scripts/fuzz --seconds 300

@@ -147,7 +147,6 @@ if(CULPRIT_TESTS)
   add_custom_target(soak_tests) # those of them that only `make soak` runs under the address sanitizer
   add_custom_target(live_tests) # those that start the processes of a robot
   add_custom_target(unsanitized_tests) # all that the address sanitizer does not look at in `make test`
-  add_custom_target(thread_tests) # those that the thread sanitizer looks at in `make test`
   add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
   if(CULPRIT_SANITIZE STREQUAL "thread")
     target_sources(culprit_test_main PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tsan_clocklock.cpp)
@@ -170,7 +169,7 @@ endif()
 # culprit_library(<floor>/<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL] [TEST_WAITS]
 #                 [TEST_LABELS <label>...] [TEST_CASES n] [TEST_ALONE <pattern>...]
-#                 [TEST_UNSANITIZED <pattern>...] [TEST_ONE_THREAD <file>...]
+#                 [TEST_UNSANITIZED <pattern>...]
 #                 [LIVE_TEST_USES <folder>...] [LIVE_PROCESSORS n])
 #
 # Builds the library <folder> of src/<floor>/<folder>/**.cpp, but for its tests and programs (*_main.cpp); the library
@@ -178,14 +177,12 @@ endif()
 # *_test.cpp.
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
 # *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so each has a
-# machine of its own (in_own_machine.sh) or runs alone, and carries the label "live". The label "threads" is for tests that the thread sanitizer repeats;
-# "soak", which all of lab/ has, for those that the address sanitizer repeats only in `make soak`. TEST_ALONE, as --gtest_filter= takes it, are tests that need a
+# machine of its own (in_own_machine.sh) or runs alone, and carries the label "live". The label "soak",
+# which all of lab/ has, is for those that the address sanitizer repeats only in `make soak`. TEST_ALONE, as --gtest_filter= takes it, are tests that need a
 # process of their own where otherwise many share one (culprit_add_shards); TEST_UNSANITIZED, of the laboratory, those that no sanitizer runs: their results
-# are statistics. TEST_ONE_THREAD, beside the label "threads", are the files <file>_test.cpp whose tests neither have nor call what has a second thread or takes
-# a lock: the thread sanitizer can find nothing there. It has them in a program of their own, <folder>_one_thread_test, for `make soak`. A new file is looked at
-# by the thread sanitizer until it is named here.
+# are statistics.
 function(culprit_library path)
-  cmake_parse_arguments(ARG "TEST_SERIAL;TEST_WAITS" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;TEST_ALONE;TEST_UNSANITIZED;TEST_ONE_THREAD;LIVE_TEST_USES;LIVE_PROCESSORS" ${ARGN})
+  cmake_parse_arguments(ARG "TEST_SERIAL;TEST_WAITS" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;TEST_ALONE;TEST_UNSANITIZED;LIVE_TEST_USES;LIVE_PROCESSORS" ${ARGN})
   get_filename_component(folder ${path} NAME)
   if(path MATCHES "^lab/")
     list(APPEND ARG_TEST_LABELS soak)
@@ -247,12 +244,6 @@ function(culprit_library path)
   culprit_check_headers(${folder}_test_headers FOLDER ${dir} HEADERS ${test_headers}
                         USES ${with} ${ARG_LIVE_TEST_USES} ${ARG_TEST_PACKAGES} GTest::gtest GTest::gmock rapidcheck culprit_test_options)
   culprit_compile_together(${folder}_test 10 ${CMAKE_CURRENT_SOURCE_DIR} ${tests}) # in each preset the same files, so that names that clash are seen in each
-  if(ARG_TEST_ONE_THREAD AND CULPRIT_SANITIZE STREQUAL "thread")
-    list(TRANSFORM ARG_TEST_ONE_THREAD PREPEND ${dir}/)
-    list(TRANSFORM ARG_TEST_ONE_THREAD APPEND _test.cpp)
-    list(REMOVE_ITEM tests ${ARG_TEST_ONE_THREAD})
-    culprit_test(${folder}_one_thread_test SOURCES ${ARG_TEST_ONE_THREAD} USES ${with} PACKAGES ${ARG_TEST_PACKAGES})
-  endif()
   if(tests)
     set(manner "")
     if(ARG_TEST_SERIAL)
@@ -385,9 +376,6 @@ function(culprit_test name)
     set(kinds live unsanitized)
   elseif("soak" IN_LIST ARG_LABELS)
     set(kinds soak unsanitized)
-  endif()
-  if("threads" IN_LIST ARG_LABELS)
-    list(APPEND kinds thread)
   endif()
   foreach(kind IN LISTS kinds)
     if(TARGET ${kind}_tests)
