@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "execute/blameless.h"
 #include "execute/goal.h"
 #include "execute/limits.h"
 
@@ -56,11 +57,27 @@ std::optional<Time> silent_since(ComponentId component, const Rule& rule,
   return since;
 }
 
+// One of those that the strategy disturbs, if none of them is to blame for the failure.
+std::optional<ComponentId> blameless_component(const Strategy& strategy,
+                                               const Knowledge& knowledge) {
+  std::optional<ComponentId> first;
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    if (adaptation.type != AdaptationType::kRestart && adaptation.type != AdaptationType::kRedeploy)
+      continue;
+    if (!is_blameless(adaptation.component, strategy.rule, knowledge)) return std::nullopt;
+    if (!first) first = adaptation.component;
+  }
+  return first;
+}
+
 }  // namespace
 
 std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
                                          Time now) {
   const RuleSet& rules = knowledge.rules;
+  if (const auto blameless = blameless_component(strategy, knowledge))
+    return rules[*blameless].name + " is well: something else is the reason of " +
+           rules[strategy.rule].name;
   const auto silent = silent_topics(rules[strategy.rule], rules);
   if (!silent) return std::nullopt;
   for (const Adaptation& adaptation : strategy.adaptations) {

@@ -14,9 +14,9 @@
 
 namespace culprit {
 
-// The reason why a component that the strategy redeploys is not broken; empty if there is none.
+// The reason why a component that the strategy restarts or redeploys is not broken; empty if there is none.
 //
-// Only an outage needs agreement. A rule whose trigger reads a value (a quality, a diagnostic, a
+// The failure may show by itself that the component is well (blameless.h). Otherwise only an outage needs agreement. A rule whose trigger reads a value (a quality, a diagnostic, a
 // parameter) has itself measured that something works badly, and its author names the component to
 // redeploy. A last resort and `stop` blame no component, so they need none either.
 std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
