@@ -316,13 +316,8 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
   return std::vector<Goal>{};
 }
 
-bool is_started_again(std::size_t place, const std::vector<Adaptation>& adaptations) {
-  if (adaptations[place].type != AdaptationType::kStop) return false;
-  return std::any_of(adaptations.begin() + static_cast<std::ptrdiff_t>(place), adaptations.end(),
-                     [&](const Adaptation& later) {
-                       return later.type == AdaptationType::kStart &&
-                              later.component == adaptations[place].component;
-                     });
+bool is_undone_by_start(const Adaptation& adaptation, const RuleSet& rules) {
+  return adaptation.type == AdaptationType::kStop && rules[adaptation.component].can_start();
 }
 
 std::vector<Goal> starting_again(const Adaptation& stop, Lifecycle before,

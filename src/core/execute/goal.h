@@ -104,8 +104,8 @@ bool is_left_to_group(ComponentId component, const Knowledge& knowledge);
 // parameter is unknown now.
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge);
 
-// Whether the adaptation at `place` stops a component that a later one starts again.
-bool is_started_again(std::size_t place, const std::vector<Adaptation>& adaptations);
+// Whether it stops a component that culprit can start again.
+bool is_undone_by_start(const Adaptation& adaptation, const RuleSet& rules);
 // How a component that `stop` ended, when it was `before`, is brought back: the last goal first.
 std::vector<Goal> starting_again(const Adaptation& stop, Lifecycle before,
                                  const Knowledge& knowledge);

@@ -96,13 +96,14 @@ Resumption resumption_of(const Interrupted& interrupted, const Knowledge& knowle
 std::vector<Undo> undo_of(const Interrupted& interrupted, const Knowledge& knowledge) {
   const auto& adaptations = knowledge.rules[interrupted.strategy].adaptations;
   std::vector<Undo> all;
+  if (knowledge.rules[interrupted.strategy].is_last_resort) return all;  // it is to last
   for (const Interrupted::Request& request : interrupted.requests) {
     const Command& command = request.command;
     if (command.purpose.undoes) continue;
     const Adaptation& adaptation = adaptations[command.purpose.adaptation];
     if (adaptation.group) continue;
     if (std::holds_alternative<StopProcess>(command.what) &&
-        is_started_again(command.purpose.adaptation, adaptations)) {
+        is_undone_by_start(adaptation, knowledge.rules)) {
       const auto* was = std::get_if<Lifecycle>(&command.purpose.before);
       for (Goal& goal : starting_again(adaptation, was ? *was : Lifecycle::kUnknown, knowledge))
         all.push_back({command.component, std::move(goal)});

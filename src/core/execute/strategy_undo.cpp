@@ -15,10 +15,9 @@ using execute::Pursuit;
 // back to where it was before the first. A step that gives back takes nothing.
 void StrategyExecutor::note_undo(Run& run) {
   const Pursuit& pursuit = *run.pursuit;
-  const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
-  const Adaptation& adaptation = adaptations[run.adaptation];
+  const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   if (adaptation.type == AdaptationType::kStop) {
-    if (!pursuit.is_reached() || !execute::is_started_again(run.adaptation, adaptations)) return;
+    if (!pursuit.is_reached() || !execute::is_undone_by_start(adaptation, knowledge_.rules)) return;
     const Lifecycle before = knowledge_.components[adaptation.component].intended_lifecycle;
     for (Goal& goal : execute::starting_again(adaptation, before, knowledge_))
       run.undo.push_back({adaptation.component, std::move(goal)});
