@@ -268,10 +268,10 @@ void ScriptedRobot::incident(const Incident& incident) {
   if (component.process == ProcessState::kGone) return;
   switch (incident.kind) {
     case Incident::Kind::kKilled:
-      component.end();
-      component.is_in_graph = false;
-      tell(ProcessSeen{incident.component, ProcessState::kGone, component.pid, "killed by signal 9",
-                       Cause::kFault});
+      kill(incident.component);
+      for (std::size_t c = 0; c < components_.size(); ++c) {
+        if (container_of(ComponentId(c), rules_) == incident.component) kill(ComponentId(c));
+      }
       break;
     case Incident::Kind::kStopped:
       component.process = ProcessState::kStopped;
@@ -288,6 +288,13 @@ void ScriptedRobot::incident(const Incident& incident) {
       tell(LifecycleRead{incident.component, component.state});
       break;
   }
+}
+
+void ScriptedRobot::kill(ComponentId id) {
+  Component& component = components_[id.index];
+  if (!component.end()) return;
+  component.is_in_graph = false;
+  tell(ProcessSeen{id, ProcessState::kGone, component.pid, "killed by signal 9", Cause::kFault});
 }
 
 // One that hangs is asked whether it is there, until its process is another.
@@ -422,11 +429,16 @@ void ScriptedRobot::tell_change(const Command& command) {
     has_changed_ = true;
     tell(LifecycleRead{command.component, components_[command.component.index].state});
   } else if (const auto* set = std::get_if<SetParameter>(&command.what)) {
-    for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
-      const Parameter& parameter = rules_.parameters[p];
-      if (parameter.component == command.component && parameter.name == set->name)
-        tell(ParameterRead{ParameterId(p), set->value});
-    }
+    tell_parameter(command.component, set->name, set->value);
+  }
+}
+
+void ScriptedRobot::tell_parameter(ComponentId component, const std::string& name,
+                                   const Value& value) {
+  for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
+    const Parameter& parameter = rules_.parameters[p];
+    if (parameter.component == component && parameter.name == name)
+      tell(ParameterRead{ParameterId(p), value});
   }
 }
 
@@ -453,6 +465,7 @@ void ScriptedRobot::start(const Command& command, Duration takes) {
     started.state = started.state_at_start;
     has_changed_ = true;
     appear(id);
+    for (const auto& [name, value] : started.parameters) tell_parameter(id, name, value);
   });
 }
 

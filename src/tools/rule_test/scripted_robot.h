@@ -68,6 +68,7 @@ class ScriptedRobot : public Robot {
   void set_default_parameters();
   void appear(ComponentId id);
   void incident(const Incident& incident);
+  void kill(ComponentId id);
   void probe(ComponentId id, int pid);
   void tell_goals(TopicId topic);
   void write_log(const LogCourse& log);
@@ -86,6 +87,7 @@ class ScriptedRobot : public Robot {
   void serve(const Command& command);
   void carry_out(const Command& command);
   void tell_change(const Command& command);
+  void tell_parameter(ComponentId component, const std::string& name, const Value& value);
   void start(const Command& command, Duration takes);
   void stop(const Command& command);
   void time_out(const Command& command);
