@@ -26,8 +26,9 @@ struct Signs {
     return std::max(ill_since[static_cast<std::size_t>(Symptom::kOutage)],
                     ill_since[static_cast<std::size_t>(symptom)]);
   }
+  // Data that are bad may end the consumer's, though they arrive.
   bool is_well(Symptom symptom) const {
-    return !is_ill(symptom) && is_watched[static_cast<std::size_t>(symptom)];
+    return !has_ill[0] && !has_ill[1] && is_watched[static_cast<std::size_t>(symptom)];
   }
 };
 
