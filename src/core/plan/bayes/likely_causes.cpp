@@ -108,9 +108,10 @@ std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
     if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), j);
   });
   if (most == 0) return std::nullopt;
-  // To wait for a person in vain is worse than a strategy in vain.
+  // To wait for a person in vain is worse than a strategy in vain. Not where the process upstream is known to be gone.
   constexpr double kWorthATry = 1.0 / 3;
-  if (own >= kWorthATry && is_exhausted(cause)) return diagnosis_.dead_in_loop(failure);
+  const bool may_be_wrong = is_exhausted(cause) && !is_known_down(causes_[cause].rule, knowledge_);
+  if (own >= kWorthATry && may_be_wrong) return diagnosis_.dead_in_loop(failure);
   return cause;
 }
 
