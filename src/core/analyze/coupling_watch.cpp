@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/awaited.h"
 #include "diagnose/causes.h"
 #include "knowledge/ambiguity.h"
 
@@ -23,13 +24,26 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
     const RuleState& state = knowledge_.states[effect];
     if (effect == cause || state.attempt) continue;
     if (!is_proven || questions_.size() >= kMostWatched) continue;
-    const Time shown = later(now, delay(cause, effect));
-    const Time due =
-        later(shown, std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle));
+    const Time gone = later(now, delay(cause, effect));
+    const Time echo = echo_of(cause, effect, now);
+    const Time shown = std::max(gone, echo);
+    const Time due = std::max(
+        later(gone, std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle)), echo);
     const Time began = diagnose::onset_of(effect, knowledge_).latest;
     questions_.push_back({strategy, effect, attempt.first_change, state.failing_since, shown, due,
                           later(now, kPatience), fired_after(began, cause)});
   }
+}
+
+// Until when the effect is taken for an echo of `cause`, which clears now. Of two values, the next reading shows whether it is one.
+Time CouplingWatch::echo_of(RuleId cause, RuleId effect, Time now) const {
+  const auto is_value = [&](RuleId rule) {
+    return diagnose::symptom_of(rule, knowledge_) == diagnose::Symptom::kValue;
+  };
+  if (is_value(effect) && is_value(cause)) return now;
+  const Time over = diagnose::recovered(cause, gone_since(cause, now), knowledge_);
+  return diagnose::echo_ends(effect, cause, over, duration_of(diagnose::kPassing, knowledge_.rules),
+                             knowledge_);
 }
 
 void CouplingWatch::note_fired(RuleId cause, Duration after) {

@@ -2,7 +2,8 @@
 // settle.
 //
 // When a strategy has resolved failure j, every other present failure i gets as long as its signals
-// need to show a change, or until the first fresh reading. Planners act on such a reading as well.
+// need to show a change, or until the first fresh reading; an outage as long as it may be an echo (diagnose/awaited.h).
+// Planners wait as long as well.
 // If i has cleared by then, it is coupled to j; otherwise it is not. The outcome counts only if
 // nothing but j's strategy can have caused it:
 //   - no other change of the system between that strategy's first request and the outcome could
@@ -105,6 +106,7 @@ class CouplingWatch {
   Time last_change_for(RuleId cleared, Time now) const;
   Time gone_since(RuleId rule, Time now) const;
   Duration delay(RuleId cause, RuleId effect) const;
+  Time echo_of(RuleId cause, RuleId effect, Time now) const;
   Duration fired_after(Time began, RuleId cause) const;
   void note_fired(RuleId cause, Duration after);
   Time shown(const Change& change, RuleId rule) const;

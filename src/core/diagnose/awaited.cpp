@@ -24,17 +24,33 @@ Time gone_since(RuleId rule, const Knowledge& knowledge) {
   return is_clearing ? state.detection.trigger_since : kLongAgo;
 }
 
-// When the rule's failure was really over.
-Time recovered(RuleId rule, const Knowledge& knowledge) {
-  return gone_since(rule, knowledge) - knowledge.latencies.lateness(rule).presumed;
-}
-
 bool cleared_lately(RuleId rule, const Knowledge& knowledge) {
   const Time gone = gone_since(rule, knowledge);
   return gone != kLongAgo && knowledge.now < later(gone, kLongestEvidence);
 }
 
+// When the last of what the cause did until then has reached the failure.
+Time last_passed_on(RuleId failure, std::optional<RuleId> cause, Time over, Duration passing,
+                    const Knowledge& knowledge) {
+  // It may have been as bad until its rule cleared: a silence shows at once that it is over.
+  const bool ends_late = cause && symptom_of(*cause, knowledge) == Symptom::kValue &&
+                         symptom_of(failure, knowledge) == Symptom::kOutage;
+  const Duration shown =
+      ends_late ? knowledge.latencies.lateness(*cause).presumed : Duration::zero();
+  return later(over, shown + passing);
+}
+
 }  // namespace
+
+Time echo_ends(RuleId failure, std::optional<RuleId> cause, Time over, Duration passing,
+               const Knowledge& knowledge) {
+  return later(last_passed_on(failure, cause, over, passing, knowledge),
+               std::min(clears_within(failure, knowledge), kLongestEvidence));
+}
+
+Time recovered(RuleId rule, Time gone, const Knowledge& knowledge) {
+  return gone - knowledge.latencies.lateness(rule).presumed;
+}
 
 void Awaited::Two::add(const Best& other) {
   if (!other.rule) return;
@@ -106,7 +122,7 @@ void Awaited::find_past() {
       past_.push_back({rule,
                        {},
                        onset_of(rule, knowledge_).earliest,
-                       recovered(rule, knowledge_),
+                       recovered(rule, gone_since(rule, knowledge_), knowledge_),
                        symptom_of(rule, knowledge_)});
   }
   for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
@@ -246,17 +262,15 @@ Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {
   // One reading of a common monitor shows both values: it decides whether the failure settles
   // (Settling).
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
-  const bool has_echo = !is_value || knowledge_.latencies.is_late(failure) ||
+  const bool has_echo = !is_value || past.symptom == Symptom::kOutage ||
+                        knowledge_.latencies.is_late(failure) ||
                         counts_events(failure, knowledge_.rules);
   const Onset onset = onset_of(failure, knowledge_);
-  // It may have been as bad until its rule cleared: a silence shows at once that it is over.
-  const bool ends_late = !is_value && past.symptom == Symptom::kValue;
-  const Duration shown =
-      ends_late ? knowledge_.latencies.lateness(*past.rule).presumed : Duration::zero();
-  const Time passed = later(past.over, shown + passing);
-  const bool is_same = !past.component && past.rule == failure;
-  if (is_same || !has_echo || past.began > onset.latest || onset.earliest > passed) return kLongAgo;
-  return later(passed, std::min(clears_within(failure, knowledge_), kLongestEvidence));
+  const std::optional<RuleId> cause = past.component ? std::nullopt : past.rule;
+  const Time passed = last_passed_on(failure, cause, past.over, passing, knowledge_);
+  if (cause == failure || !has_echo || past.began > onset.latest || onset.earliest > passed)
+    return kLongAgo;
+  return echo_ends(failure, cause, past.over, passing, knowledge_);
 }
 
 std::optional<Awaiting> Awaited::of(RuleId failure) const {

@@ -46,6 +46,13 @@ struct Awaiting {
   std::optional<ComponentId> component{};
 };
 
+// Z_i of one cause that was `over` then: a rule; empty: the outage of a component.
+Time echo_ends(RuleId failure, std::optional<RuleId> cause, Time over, Duration passing,
+               const Knowledge& knowledge);
+
+// r_u of a rule whose trigger is false since `gone`.
+Time recovered(RuleId rule, Time gone, const Knowledge& knowledge);
+
 class Awaited {
  public:
   // For `failures`, those to be decided about. `knowledge` must outlive it.
