@@ -29,7 +29,9 @@ std::size_t taken_back(ComponentId component, const std::vector<Adaptation>& all
 }  // namespace
 
 StrategyExecutor::StrategyExecutor(const Knowledge& knowledge, Writes writes)
-    : knowledge_(knowledge), write_(writes) {}
+    : knowledge_(knowledge),
+      write_(writes),
+      notes_(knowledge, writes.components, writes.rivals, writes.events) {}
 
 StrategyExecutor::~StrategyExecutor() = default;
 
@@ -206,7 +208,7 @@ void StrategyExecutor::advance(Run& run, Time now, std::vector<Command>& command
         run.pending = {++last_command_};
         if (std::holds_alternative<StopProcess>(*request))
           write_.components[run.pursuit->component()].culprit_raised = kLongAgo;
-        note_transition(*run.pursuit, *request, now);
+        notes_.sends(*run.pursuit, *request, now);
         commands.push_back({run.pending, run.pursuit->component(), *request,
                             run.pursuit->timeout(*request), purpose_of(run)});
       }
@@ -452,7 +454,7 @@ void StrategyExecutor::finish_goal(Run& run, Time now) {
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   // A last resort is to last, even after its failure has cleared.
   const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
-  note_brought(pursuit);
+  notes_.ended(pursuit);
   // Members that are up stay up: a part of the group is better than nothing.
   if (!is_to_last && !adaptation.group && pursuit.has_changed_anything()) note_undo(run);
   if (pursuit.is_reached()) {
@@ -461,21 +463,21 @@ void StrategyExecutor::finish_goal(Run& run, Time now) {
     const bool is_last = std::none_of(rest, run.goals.end(), [](const execute::Goal& goal) {
       return std::holds_alternative<execute::LifecycleGoal>(goal);
     });
-    if (is_last) note_lifecycle(pursuit, now);
+    if (is_last) notes_.reached_lifecycle(pursuit, now);
     const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
     if (is_to_last && lifecycle != nullptr && lifecycle->target == Lifecycle::kInactive)
       owe_no_more(pursuit.component(), now);
     if (const auto* parameter = std::get_if<execute::ParameterGoal>(&pursuit.goal()))
       forget_owed(pursuit.component(), parameter->name);
     // The manager of a group goes on being the driver of its members.
-    if (launches(adaptation) || (!adaptation.group && is_first_rise(pursuit)))
-      note_coming_up(pursuit, now);
+    if (launches(adaptation) || (!adaptation.group && notes_.is_first_rise(pursuit)))
+      notes_.came_up(pursuit, now);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
-    note_mode(pursuit, now);
+    notes_.reached_mode(pursuit, now);
     ++run.goal;
   } else if (!replace_hung_member(run) && !start_again(run, now)) {
     if (pursuit.met_rival()) note_rival(run, now);
-    if (launches(adaptation) && pursuit.took_too_long()) note_too_long(pursuit, now);
+    if (launches(adaptation) && pursuit.took_too_long()) notes_.took_too_long(pursuit, now);
     goes_past(run, knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark(),
               pursuit.remark(), now);
   }
@@ -496,85 +498,6 @@ void StrategyExecutor::note_change(Run& run, Time now) {
   if (run.is_undoing || attempt_of(run)->first_change != kNever) return;
   write_.attempts.change_begins(run.strategy, now);
   mark_ambiguous(knowledge_, run.strategy, write_.attempts, write_.outcomes);
-}
-
-// The component's lifecycle is now where it was brought on purpose.
-void StrategyExecutor::note_lifecycle(const Pursuit& pursuit, Time now) {
-  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
-  if (lifecycle != nullptr)
-    write_.components.intend_lifecycle(pursuit.component(), lifecycle->target, now, write_.events);
-}
-
-// From now on another state is somebody else's doing. An unproven change may still come.
-void StrategyExecutor::note_brought(const Pursuit& pursuit) {
-  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
-  if (lifecycle == nullptr || !pursuit.has_changed_anything()) return;
-  auto& brought = write_.components[pursuit.component()].brought;
-  const bool is_owed = brought && brought->is_owed;
-  if (pursuit.is_reached()) {
-    brought = Brought{lifecycle->target};
-  } else if (!is_owed) {
-    brought.reset();
-  }
-}
-
-// It stayed unconfigured until a rule had culprit bring it up: it has no other driver.
-bool StrategyExecutor::is_first_rise(const Pursuit& pursuit) const {
-  const auto& before = pursuit.before();
-  const auto* state = before ? std::get_if<Lifecycle>(&before->value) : nullptr;
-  const auto driver = knowledge_.components[pursuit.component()].coming_up.driver;
-  return state != nullptr && *state == Lifecycle::kUnconfigured &&
-         driver == ComingUp::Driver::kUnknown;
-}
-
-// How long it took, and who brought it up.
-void StrategyExecutor::note_coming_up(const Pursuit& pursuit, Time now) {
-  ComponentState& state = write_.components[pursuit.component()];
-  ComingUp how = state.coming_up;
-  if (std::holds_alternative<execute::PresentGoal>(pursuit.goal()) &&
-      pursuit.has_changed_anything()) {
-    how.joining = now - pursuit.changed();
-  } else if (std::holds_alternative<execute::LifecycleGoal>(pursuit.goal())) {
-    const bool is_ours = pursuit.has_changed_anything() && !pursuit.met_driver();
-    how.driver = is_ours ? ComingUp::Driver::kCulprit : ComingUp::Driver::kOther;
-    how.rising = now - (is_ours ? pursuit.first_changed() : state.node_seen);
-    if (is_ours) state.culprit_raised = now;
-  }
-  write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
-}
-
-// A component that once took too long gets more time at its next start.
-void StrategyExecutor::note_too_long(const Pursuit& pursuit, Time now) {
-  const ComponentState& state = knowledge_.components[pursuit.component()];
-  ComingUp how = state.coming_up;
-  if (std::holds_alternative<execute::PresentGoal>(pursuit.goal())) {
-    how.joining = std::max(how.joining, now - pursuit.changed());
-  } else if (std::holds_alternative<execute::LifecycleGoal>(pursuit.goal())) {
-    how.rising = std::max(how.rising, now - pursuit.first_changed());
-  }
-  write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
-}
-
-// A node may not report a transition before it is over.
-void StrategyExecutor::note_transition(const Pursuit& pursuit, const Pursuit::Request& request,
-                                       Time now) {
-  if (!std::holds_alternative<ChangeLifecycle>(request)) return;
-  ComponentState& state = write_.components[pursuit.component()];
-  state.transition_patience = std::get<execute::LifecycleGoal>(pursuit.goal()).patience;
-  state.changes_until = later(now, state.transition_patience);
-}
-
-// Which mode was set, and from which: something else may set it back.
-void StrategyExecutor::note_mode(const Pursuit& pursuit, Time now) {
-  const auto* mode = std::get_if<execute::ModeGoal>(&pursuit.goal());
-  const auto* value = pursuit.before() ? std::get_if<Value>(&pursuit.before()->value) : nullptr;
-  const auto* before = value == nullptr ? nullptr : std::get_if<std::string>(value);
-  // An odd remark says that it does not read back what was set.
-  if (mode == nullptr || before == nullptr || !pursuit.has_changed_anything() ||
-      !pursuit.remark().empty())
-    return;
-  write_.rivals.changed(pursuit.component(), *before, mode->mode,
-                        knowledge_.began(pursuit.component()), now);
 }
 
 void StrategyExecutor::note_rival(const Run& run, Time now) {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "execute/component_notes.h"
 #include "execute/pursuit.h"
 #include "execute/resumption.h"
 #include "knowledge/attempts.h"
@@ -119,7 +120,6 @@ class StrategyExecutor {
   bool has_taken(const Run& run, ComponentId component) const;
   bool start_again(Run& run, Time now);
   void fail_with_lost_process(const Run& run);
-  bool is_first_rise(const execute::Pursuit& pursuit) const;
   std::optional<ComponentId> deactivated_meanwhile(const Run& run) const;
   bool is_managed_still(const Run& run) const;
   void note_begun_anew(const Run& run, Time now);
@@ -146,19 +146,13 @@ class StrategyExecutor {
   bool is_of_present_process(const Question& question) const;
   void note_answer(const Question& question, Outcome outcome);
   void note_change(Run& run, Time now);
-  void note_mode(const execute::Pursuit& pursuit, Time now);
   void note_rival(const Run& run, Time now);
-  void note_lifecycle(const execute::Pursuit& pursuit, Time now);
-  void note_brought(const execute::Pursuit& pursuit);
-  void note_coming_up(const execute::Pursuit& pursuit, Time now);
-  void note_too_long(const execute::Pursuit& pursuit, Time now);
-  void note_transition(const execute::Pursuit& pursuit, const execute::Pursuit::Request& request,
-                       Time now);
   const Attempt* attempt_of(const Run& run) const;
   void obstruct(const Run& run, std::string obstacle, const std::string& reason, Time now);
 
   const Knowledge& knowledge_;
   Writes write_;
+  execute::ComponentNotes notes_;
   std::vector<Run> runs_;
   // Parameters to be undone in processes that had exited by then; kept until the process is there
   // again, whoever starts it.

@@ -217,7 +217,7 @@ void StrategyExecutor::finish_undo(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const bool reached = pursuit.is_reached();
   if (reached) {
-    note_lifecycle(pursuit, now);
+    notes_.reached_lifecycle(pursuit, now);
   } else {
     owe(run.undo.back(), now);
   }
