@@ -11,7 +11,6 @@
 #include "ros2/helper_options.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
-#include "rtps/origins.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -97,9 +96,7 @@ Expected<void> Link::start() {
   }
   publishing_ = std::make_unique<Timer>(executor_, kPublishPeriod, [this] {
     publish_again();
-    tell_of_refused();
-    tell_of_foreign_sources();
-    tell_of_dropped();
+    datagrams_->tell(live_now());
     remind();
     listen_to_hosts();
     look_at_hosts();
@@ -155,6 +152,7 @@ Expected<void> Link::join() {
   if (!context) return Error{context.error()};
   context_ = std::move(*context);
   context_->participant().on_round([this] { inbox_.hand_over(); });
+  datagrams_.emplace(*context_, inbox_, options_.participant.helper != nullptr);
   context_->on_discovery([this](const DiscoveryEvent& event) { on_discovery(event); });
   departures_.watch(*context_);
   hosts_ = std::make_unique<ComponentHosts>(
@@ -538,43 +536,6 @@ std::vector<ListeningProof::Silent> Link::silent_topics() const {
 
 void Link::prove_listening(Time until) {
   if (options_.participant.servers.empty()) listening_->seek(until);
-}
-
-void Link::tell_of_refused() {
-  const DatagramFilter::Refused refused = context_->participant().refused();
-  if (!refused_.is_due(refused.count)) return;
-  inbox_.put(LinkTrouble{
-      (refused.count == 1 ? "1 datagram was" : std::to_string(refused.count) + " datagrams were") +
-      std::string(" kept out so far: ") + refused.why +
-      "; which program on this network sends them?"});
-}
-
-void Link::tell_of_dropped() {
-  const std::uint64_t dropped = context_->participant().dropped_here();
-  if (!dropped_.is_due(dropped)) return;
-  const std::string whose = options_.participant.helper ? "the helper program's" : "culprit's own";
-  inbox_.put(
-      LinkTrouble{whose + " sockets were full and dropped " + std::to_string(dropped) +
-                  " datagrams so far; loss() is unknown while they may be what is missing. Raise "
-                  "net.core.rmem_max, or find the program that floods the network"});
-}
-
-void Link::tell_of_foreign_sources() {
-  Origins& origins = context_->participant().origins();
-  origins.check(live_now());
-  for (const ForeignSource& source : origins.new_sources()) {
-    std::string name = "a node";
-    for (const Graph::NodeView& node : context_->graph().bare_nodes()) {
-      if (node.participant == source.in_name_of) name = node.node.name;
-    }
-    const std::string owner =
-        source.user ? ", a socket of user " + std::to_string(*source.user) : "";
-    const std::string process =
-        source.pid == 0 ? "" : " (process " + std::to_string(source.pid) + ")";
-    inbox_.put(LinkTrouble{
-        "datagrams from " + to_text(source.from) + owner + " speak for " + name + process +
-        ", which does not send from there; they are dropped. Find the program that sends them"});
-  }
 }
 
 // ---- commands

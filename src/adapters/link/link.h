@@ -25,6 +25,7 @@
 #include "language/rule_set.h"
 #include "link/component_hosts.h"
 #include "link/component_link.h"
+#include "link/datagram_troubles.h"
 #include "link/departures.h"
 #include "link/diagnostics_watch.h"
 #include "link/lease_link.h"
@@ -37,7 +38,6 @@
 #include "link/process_usage.h"
 #include "link/robot_time.h"
 #include "link/starvation.h"
-#include "link/tenfold.h"
 #include "link/topic_watch.h"
 #include "link/type_finder.h"
 #include "robot/command.h"
@@ -161,9 +161,6 @@ class Link {
   std::vector<ListeningProof::Silent> silent_topics() const;
   void publish_again();
   void tell_usage();
-  void tell_of_refused();
-  void tell_of_foreign_sources();
-  void tell_of_dropped();
   void remind();
 
   ComponentLink* link_of(ComponentId component);
@@ -177,6 +174,7 @@ class Link {
 
   Executor executor_;
   std::unique_ptr<Context> context_;
+  std::optional<DatagramTroubles> datagrams_;
   std::unique_ptr<Node> node_;
   std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
   std::map<std::string, std::unique_ptr<TopicWatch>> watches_;  // by topic
@@ -205,8 +203,6 @@ class Link {
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;
   std::unique_ptr<Hearing> hearing_;
-  Tenfold refused_{1};    // datagrams; a robot sends none of them
-  Tenfold dropped_{100};  // by our own full sockets; a burst of announcements may cost a few
   std::unique_ptr<LeaseLink> lease_;
   std::unique_ptr<ComponentHosts> hosts_;
   Time looked_at_hosts_ = kLongAgo;  // on the executor's thread
