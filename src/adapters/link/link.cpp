@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <malloc.h>
+#include <set>
 
 #include "base/environment.h"
 #include "base/live_clock.h"
@@ -337,7 +338,7 @@ void Link::on_joined(const GraphNode& node) {
   inbox_.put(NodeAppeared{node.name, node.pid});
   diagnostics_watch_->node_joined(node.name);
   if (node.name == node_->name().full()) namesake_.joined(node, live_now());
-  for (auto& [manager, systems] : systems_) std::erase(systems, node.name);
+  mode_managers_.node_joined(node.name);
   departures_.is_back(node.name);
   const auto component = binding_.bind(node.name);
   if (!component) return;
@@ -357,7 +358,7 @@ void Link::on_left(const std::string& node, bool was_lost) {
   other_nodes_->left(node);
   probed_.erase(node);
   diagnostics_watch_->node_left(node);
-  std::erase_if(mode_managers_, [&](const auto& each) { return each.second == node; });
+  mode_managers_.node_left(node);
   if (node == node_->name().full()) namesake_.left();
   departures_.left(node, was_lost);
 }
@@ -374,10 +375,8 @@ void Link::ask(const std::string& node, Departures::Then then) {
 void Link::vanished(const std::string& node, bool was_lost) {
   const auto component = was_lost ? std::nullopt : binding_.bind(node);
   if (component && !other_nodes_->has(*component, node)) hosts_->lives_on(*component, "");
-  const auto managed = systems_.extract(node);
-  if (managed) {
-    for (const std::string& system : managed.mapped()) inbox_.put(NodeVanished{system});
-  }
+  for (const std::string& system : mode_managers_.systems_gone_with(node))
+    inbox_.put(NodeVanished{system});
   inbox_.put(NodeVanished{node});
 }
 
@@ -392,30 +391,15 @@ void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
   const std::string system = service.name.substr(0, service.name.rfind('/'));
   const auto component = binding_.bind(system);
   if (system == manager || !component || rules_[*component].node != system) return;
-  if (!may_tell_modes(manager, system)) return;
   const Graph& graph = context_->graph();
+  if (!mode_managers_.may_tell(manager, system, graph)) return;
   if (!graph.node(system)) {
-    systems_[manager].push_back(system);
+    mode_managers_.represents(manager, system);
     inbox_.put(NodeAppeared{system, graph.process_of(manager)});
   }
   ComponentLink* link = make_link(*component, system);
   link->modes_come_from(participant_of(manager));
   link->service_seen(service);
-}
-
-// The first one that offers them, for anybody may; and one that is proven to be here takes the place of one that is not.
-bool Link::may_tell_modes(const std::string& manager, const std::string& system) {
-  const auto [known, is_new] = mode_managers_.try_emplace(system, manager);
-  if (is_new || known->second == manager) return true;
-  const Graph& graph = context_->graph();
-  const bool is_better = graph.process_of(manager) != 0 && graph.process_of(known->second) == 0;
-  constexpr std::size_t kMost = 100;
-  if (told_of_.size() < kMost && told_of_.emplace(system, manager).second)
-    inbox_.put(LinkTrouble{"the modes of " + system + " are offered by " + known->second +
-                           " and by " + manager + ": only those of " +
-                           (is_better ? manager : known->second) + " count"});
-  if (is_better) known->second = manager;
-  return is_better;
 }
 
 void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {

@@ -14,7 +14,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -31,6 +30,7 @@
 #include "link/lease_link.h"
 #include "link/listening_proof.h"
 #include "link/log_watch.h"
+#include "link/mode_managers.h"
 #include "link/name_contests.h"
 #include "link/namesake.h"
 #include "link/other_nodes.h"
@@ -152,7 +152,6 @@ class Link {
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
   void tell_writers(const std::string& topic);
   void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
-  bool may_tell_modes(const std::string& manager, const std::string& system);
   void on_discovery(const DiscoveryEvent& event);
   void listen_to_hosts();
   void look_at_hosts();
@@ -183,9 +182,6 @@ class Link {
   std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
   std::unique_ptr<LogWatch> log_watch_;
   std::unique_ptr<ParameterWatch> parameter_watch_;
-  std::set<std::pair<std::string, std::string>>
-      told_of_;                                       // systems, and others that offer their modes
-  std::map<std::string, std::string> mode_managers_;  // by system: the node whose modes count
   struct ToProbe {
     ComponentId component;
     int pid = 0;  // 0: not known
@@ -198,7 +194,7 @@ class Link {
   Namesake namesake_;
   Starvation starvation_;
   std::optional<Time> probed_last_;
-  std::map<std::string, std::vector<std::string>> systems_;  // by the mode manager's node
+  ModeManagers mode_managers_{inbox_};
   std::unique_ptr<ListeningProof> listening_;
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;
