@@ -5,32 +5,9 @@
 
 #include "base/invariant.h"
 #include "base/ros_names.h"
-#include "ros2/service_mapping.h"
 
 namespace culprit::ros2 {
 namespace {
-
-// A node's reader of a topic is a subscriber, its reader of requests a server, and so on. The other
-// halves of services (replies) add nothing.
-std::optional<GraphEndpoint> ros_meaning(const EndpointInfo& info) {
-  auto channel = demangle_topic(info.topic);
-  if (!channel || channel->channel == Channel::kReply) return std::nullopt;
-  auto type = demangle_type(channel->channel, info.type);
-  if (!type) return std::nullopt;
-  const bool reads = info.guid.is_reader();
-  EndpointKind kind = reads ? EndpointKind::kSubscriber : EndpointKind::kPublisher;
-  if (channel->channel == Channel::kRequest)
-    kind = reads ? EndpointKind::kServer : EndpointKind::kClient;
-  return GraphEndpoint{kind,
-                       std::move(channel->name),
-                       std::move(*type),
-                       info.qos,
-                       std::string(user_data_value(info.user_data, "typehash")),
-                       std::string(user_data_value(info.user_data, "sertypehash")),
-                       info.partitions,
-                       !user_data_value(info.user_data, "clientid").empty() ||
-                           !user_data_value(info.user_data, "serviceid").empty()};
-}
 
 // Gives nothing if a name breaks the grammar.
 std::optional<std::string> full_name(const NodeEntities& node) {
@@ -157,8 +134,9 @@ Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
       tell(GraphTrouble{"one process holds two nodes with the name " + *name});
     }
     const bool is_more = !nodes_.contains(*name) && !is_component(*name);
-    if (is_more && (nodes_.size() + ++new_nodes > options_.limits.nodes ||
-                    !has_room(peer.source, &Source::names, options_.limits.nodes, claims.size()))) {
+    if (is_more &&
+        (nodes_.size() + ++new_nodes > options_.limits.nodes ||
+         !sources_.has_room(peer.source, &Source::names, options_.limits.nodes, claims.size()))) {
       warn_of_limit("nodes");
       break;
     }
@@ -188,7 +166,8 @@ void Graph::add(const ParticipantInfo& info) {
   const std::string source = options_.source_of ? options_.source_of(info) : "";
   const bool is_full = peers_.size() >= options_.limits.participants;
   const bool is_reserved = is_of_robot(info) && peers_.size() < 2 * options_.limits.participants;
-  if (!is_reserved && !has_room(source, &Source::participants, options_.limits.participants) &&
+  if (!is_reserved &&
+      !sources_.has_room(source, &Source::participants, options_.limits.participants) &&
       !(is_full && source.empty() && make_room()))
     return warn_of_limit("participants");
   Peer& peer = peers_[prefix];
@@ -205,7 +184,8 @@ void Graph::add(const EndpointInfo& info) {
     if (known->info.topic == info.topic && known->info.type == info.type)
       return;  // only its QoS or user data
     hide(info.guid);
-  } else if (!has_room(peer->second.source, &Source::endpoints, options_.limits.endpoints) &&
+  } else if (!sources_.has_room(peer->second.source, &Source::endpoints,
+                                options_.limits.endpoints) &&
              !(is_of_robot(peer->second.info) && endpoint_count_ < 2 * options_.limits.endpoints)) {
     return warn_of_limit("endpoints");
   } else {
@@ -226,10 +206,10 @@ void Graph::remove_participant(const GuidPrefix& prefix) {
   for (const auto& [name, guids] : before) claim_count_ -= guids.size();
   replace_claims(prefix, peer, before, {});
   endpoint_count_ -= peer.endpoints.size();
-  const auto source = sources_.find(peer.source);
-  source->second.names -= before.size();
-  source->second.endpoints -= peer.endpoints.size();
-  if (--source->second.participants == 0) sources_.erase(source);
+  Source& source = sources_[peer.source];
+  source.names -= before.size();
+  source.endpoints -= peer.endpoints.size();
+  if (--source.participants == 0) sources_.forget(peer.source);
   peers_.erase(found);
 }
 
@@ -494,26 +474,6 @@ void Graph::count_component(Node& node, bool is_one) {
   if (std::exchange(node.is_counted, is_one) == is_one) return;
   std::size_t& count = sources_[peers_.at(*node.told).source].components;
   count = is_one ? count + 1 : count - 1;
-}
-
-// Whether `source` may have one more, beside `more`.
-bool Graph::has_room(const std::string& source, std::size_t Source::*what, std::size_t limit,
-                     std::size_t more) const {
-  std::size_t all = more;
-  std::size_t of_strangers = more;
-  std::size_t of_this = more;
-  bool is_stranger = !source.empty();
-  for (const auto& [name, each] : sources_) {
-    all += each.*what;
-    const bool is_known = name.empty() || each.components > 0;
-    if (!is_known) of_strangers += each.*what;
-    if (name != source) continue;
-    of_this += each.*what;
-    is_stranger = !is_known;
-  }
-  if (all >= limit) return false;
-  return !is_stranger || (of_strangers < std::max<std::size_t>(limit / 2, 1) &&
-                          of_this < std::max<std::size_t>(limit / 4, 1));
 }
 
 // A participant of this machine that is there for longest without any node goes. A ROS 2

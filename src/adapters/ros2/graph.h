@@ -17,10 +17,8 @@
 //   that leaves takes its nodes with it.
 // - Names come from the network. Nodes whose names break the grammar are left out and reported as
 //   trouble once for each participant; endpoints that are not ROS 2's are left out silently.
-// - Tables are capped. Half of each is kept free for sources that are known: this machine, and those that hold a
-//   component. One source gets at most half of the other half. So a stranger that makes up
-//   participants does not keep the robot's from being discovered. On this machine a participant
-//   that holds no node makes room for another.
+// - Tables are capped, and shared between the sources of participants (graph_sources.h). On this machine a
+//   participant that holds no node makes room for another.
 //
 // A pure data structure: fed by one thread, no I/O, no clock.
 #pragma once
@@ -38,24 +36,12 @@
 
 #include "base/endpoint_kind.h"
 #include "ros2/discovery_info.h"
+#include "ros2/graph_endpoint.h"
+#include "ros2/graph_sources.h"
 #include "ros2/names.h"
 #include "ros2/participant.h"
 
 namespace culprit::ros2 {
-
-struct GraphEndpoint {
-  EndpointKind kind = EndpointKind::kPublisher;
-  std::string name;  // of the topic or service, absolute
-  std::string type;  // "package/msg/Type" or "package/srv/Type"
-  Qos qos;           // as announced, without depth
-  // As announced (type_description.h); empty before Iron. Of a service: of its request.
-  std::string type_hash{};
-  std::string service_hash{};  // likewise of the whole service; empty before Lyrical
-  std::vector<std::string> partitions{};
-  // Of services: it names its other half ("clientid=", "serviceid="), as rmw_cyclonedds does, and
-  // others that use its mapping (service_mapping.h).
-  bool names_its_pair = false;
-};
 
 struct GraphNode {
   std::string name;  // full: "/namespace/name"
@@ -242,13 +228,7 @@ class Graph {
     Claims claims;
     std::unordered_map<Guid, Endpoint> endpoints;
   };
-  // The entries of one source.
-  struct Source {
-    std::size_t participants = 0;
-    std::size_t names = 0;      // that they claim
-    std::size_t endpoints = 0;  // discovered
-    std::size_t components = 0;
-  };
+  using Source = GraphSources::Entries;
   using EdgeKey = std::pair<EndpointKind, std::string>;
   struct Edge {
     GraphEndpoint endpoint;
@@ -294,15 +274,13 @@ class Graph {
   bool is_component(const std::string& name) const;
   // Whether its announcement names a component: it has room beyond the limits, as many again.
   bool is_of_robot(const ParticipantInfo& participant) const;
-  bool has_room(const std::string& source, std::size_t Source::*what, std::size_t limit,
-                std::size_t more = 0) const;
   bool make_room();
   void count_component(Node& node, bool is_one);
   void tell(const GraphChange& change) const;
 
   Options options_;
   std::unordered_map<GuidPrefix, Peer> peers_;
-  std::map<std::string, Source> sources_;
+  GraphSources sources_;
   std::uint64_t last_number_ = 0;                 // of a participant
   std::size_t endpoint_count_ = 0;                // discovered, of all peers
   std::size_t claim_count_ = 0;                   // claimed, of all peers
