@@ -21,8 +21,8 @@
 #include "base/wake_file.h"
 #include "culprit_link/protocol.h"
 #include "ros2/helper_endpoint.h"
+#include "ros2/helper_endpoints.h"
 #include "ros2/helper_graph.h"
-#include "ros2/helper_outbox.h"
 #include "ros2/helper_process.h"
 #include "ros2/names.h"
 #include "ros2/seldom_times.h"
@@ -56,23 +56,13 @@ GuidPrefix random_prefix() {
   return prefix;
 }
 
-Guid own_guid(const GuidPrefix& prefix, std::uint32_t id, std::uint8_t kind) {
-  Guid guid;
-  std::ranges::copy(prefix.bytes, guid.bytes.begin());
-  guid.bytes[12] = static_cast<std::uint8_t>(id >> 16);
-  guid.bytes[13] = static_cast<std::uint8_t>(id >> 8);
-  guid.bytes[14] = static_cast<std::uint8_t>(id);
-  guid.bytes[15] = kind;
-  return guid;
-}
-
 class Helped final : public Participant::Impl {
  public:
   Helped(HelperOptions options, DiscoveryCallback on_discovery)
       : options_(std::move(options)),
         on_discovery_(std::move(on_discovery)),
-        prefix_(random_prefix()),
-        guid_(own_guid(prefix_, 1, 0xc1)) {}
+        ours_(random_prefix()),
+        guid_(ours_.guid(1, 0xc1)) {}
 
   ~Helped() override {
     ends_ = true;
@@ -119,22 +109,24 @@ class Helped final : public Participant::Impl {
 
   // Readers and writers call these.
   void remove(const Ours& ours) {
-    {
-      const MutexLock lock(mutex_);
-      ours_.erase(ours.id);
-      if (ours.wish) outbox_.queue(link::Remove{ours.id});
-    }
+    ours_.remove(ours);
     wake_.wake();
   }
   std::optional<std::int64_t> write(const Ours& ours, ByteView payload,
-                                    const SampleIdentity& related);
+                                    const SampleIdentity& related) {
+    const auto number = ours_.write(ours, payload, related);
+    if (number) wake_.wake();
+    return number;
+  }
 
  private:
-  using OursPtr = std::shared_ptr<Ours>;
+  using OursPtr = HelperEndpoints::Ptr;
 
-  Expected<OursPtr> add(EndpointRole role, const std::string& topic, const std::string& type,
-                        const Qos& qos, PayloadUse use, SampleCallback on_sample,
-                        MatchCallback on_match);
+  void added(const Ours& ours) {
+    if (ours.reads() && ours.meaning.purpose == Purpose::kInfos) infos_are_due_ = true;
+    rematches_ = true;
+    wake_.wake();
+  }
 
   // ---- the thread that talks to the helper
 
@@ -161,12 +153,13 @@ class Helped final : public Participant::Impl {
   std::string talk(HelperProcess& process) {
     reader_ = link::FrameReader();
     dropped_by_helper_ = 0;
-    begin_talk();
+    ours_.greet(link::Join{link::kVersion, options_.name_space, options_.name});
     const Time began = live_now();
     came_last_ = began;
     while (!ends_) {
       std::array<pollfd, 2> files{};
-      files[0] = {process.socket(), static_cast<short>(POLLIN | (has_waiting() ? POLLOUT : 0)), 0};
+      files[0] = {process.socket(),
+                  static_cast<short>(POLLIN | (ours_.has_waiting() ? POLLOUT : 0)), 0};
       files[1] = {wake_.descriptor(), POLLIN, 0};
       constexpr int kLookMs = std::chrono::milliseconds(kLooks).count();
       (void)poll(files.data(), files.size(), kLookMs);
@@ -174,7 +167,7 @@ class Helped final : public Participant::Impl {
       if (const auto why = receive(process); !why.empty()) return why;
       if (is_joined_ && last_graph_ && rematches_.exchange(false)) match();
       if (is_joined_) deliver_infos();
-      if (!send_waiting(process.socket())) return process.end();
+      if (!ours_.send(process.socket())) return process.end();
       const Time now = live_now();
       if (is_joined_) look_whether_settled(now);
       if (is_joined_ && now > later(asked_last_, kAsks)) {
@@ -189,7 +182,7 @@ class Helped final : public Participant::Impl {
         process.end();
         return is_joined_ ? "it hung" : "it did not join the robot";
       }
-      if (is_stuck()) {
+      if (ours_.is_stuck()) {
         process.end();
         return "it does not read";
       }
@@ -217,13 +210,7 @@ class Helped final : public Participant::Impl {
 
   void ask_whether_it_works(Time now) {
     asked_last_ = now;
-    const MutexLock lock(mutex_);
-    outbox_.queue(link::Echo{});
-  }
-
-  void begin_talk() {
-    const MutexLock lock(mutex_);
-    outbox_.greet(link::Join{link::kVersion, options_.name_space, options_.name});
+    ours_.queue(link::Echo{});
   }
 
   // Everything that is there. Not empty: it ended, or means nothing.
@@ -260,20 +247,6 @@ class Helped final : public Participant::Impl {
     return "";
   }
 
-  bool send_waiting(int socket) {
-    const MutexLock lock(mutex_);
-    return outbox_.send(socket);
-  }
-
-  bool has_waiting() {
-    const MutexLock lock(mutex_);
-    return outbox_.has_waiting();
-  }
-  bool is_stuck() {
-    const MutexLock lock(mutex_);
-    return outbox_.is_stuck();
-  }
-
   // ---- what the helper says; each gives why the talk is over
 
   std::string take(const link::Welcome& welcome) {
@@ -290,18 +263,15 @@ class Helped final : public Participant::Impl {
     is_settled_ = false;
     joined_ = live_now();
     last_graph_.reset();
+    ours_.begin();
     const MutexLock lock(mutex_);
-    outbox_.begin();
-    for (const auto& [id, ours] : ours_) {
-      if (ours->wish) outbox_.queue(*ours->wish);
-    }
     has_joined_ = true;
     changed_.notify_all();
     return "";
   }
 
   std::string take(const link::Arrived& sample) {
-    const OursPtr ours = find(sample.id);
+    const OursPtr ours = ours_.find(sample.id);
     if (!ours || ours->meaning.purpose != Purpose::kTopic || !ours->on_sample) return "";
     ours->came_last = live_now();
     awaited_.erase(sample.id);
@@ -322,9 +292,9 @@ class Helped final : public Participant::Impl {
 
   // The middleware does not say who answered: a server of the service.
   std::string take(const link::Reply& reply) {
-    const OursPtr client = find(reply.id);
+    const OursPtr client = ours_.find(reply.id);
     if (!client || client->meaning.purpose != Purpose::kRequest) return "";
-    for (const OursPtr& ours : readers_of(Purpose::kReply, client->meaning.name)) {
+    for (const OursPtr& ours : ours_.readers_of(Purpose::kReply, client->meaning.name)) {
       const std::set<Guid>& servers = graph_.matching(ours->topic, EndpointRole::kReader);
       const Guid server = servers.empty() ? Guid{} : ours->newest_of(servers);
       ours->deliver(reply.payload, {server, reply.number}, {client->guid, reply.number});
@@ -333,9 +303,9 @@ class Helped final : public Participant::Impl {
   }
 
   std::string take(const link::Asked& asked) {
-    const OursPtr server = find(asked.id);
+    const OursPtr server = ours_.find(asked.id);
     if (server && server->meaning.purpose == Purpose::kRequest)
-      server->deliver(asked.payload, {own_guid(prefix_, 0, 0x03), asked.number}, {});
+      server->deliver(asked.payload, {ours_.guid(0, 0x03), asked.number}, {});
     return "";
   }
 
@@ -344,10 +314,10 @@ class Helped final : public Participant::Impl {
     if (echo.payload.size() < sizeof(std::uint32_t) || !is_settled_) return "";
     std::uint32_t id = 0;
     std::memcpy(&id, echo.payload.data(), sizeof id);
-    const OursPtr writer = find(id);
+    const OursPtr writer = ours_.find(id);
     if (!writer || writer->meaning.purpose != Purpose::kOwn) return "";
     const ByteView payload = ByteView(echo.payload).subspan(sizeof id);
-    for (const OursPtr& ours : readers_of(Purpose::kOwn, writer->meaning.name))
+    for (const OursPtr& ours : ours_.readers_of(Purpose::kOwn, writer->meaning.name))
       ours->deliver(payload, {writer->guid, ours->count(writer->guid)}, {});
     return "";
   }
@@ -359,7 +329,7 @@ class Helped final : public Participant::Impl {
   }
 
   std::string take(const link::Refused& refused) {
-    const OursPtr ours = find(refused.id);
+    const OursPtr ours = ours_.find(refused.id);
     constexpr std::size_t kMost = 100;
     // Once for each reason: a missing package has many types.
     if (ours && told_.size() < kMost && told_.insert(refused.why).second)
@@ -408,7 +378,7 @@ class Helped final : public Participant::Impl {
 
   void deliver_info(const DiscoveryInfo& info) {
     const Bytes payload = encode_discovery_info(info, GidSize::kHumbleAndOlder);
-    for (const OursPtr& ours : readers_of(Purpose::kInfos, std::string(kDiscoveryInfoTopic)))
+    for (const OursPtr& ours : ours_.readers_of(Purpose::kInfos, std::string(kDiscoveryInfoTopic)))
       ours->deliver(payload, {info.participant, ours->count(info.participant)}, {});
   }
 
@@ -419,7 +389,7 @@ class Helped final : public Participant::Impl {
   }
 
   void match() {
-    for (const OursPtr& ours : all_ours()) {
+    for (const OursPtr& ours : ours_.all()) {
       if (ours->meaning.purpose == Purpose::kOwn || ours->meaning.purpose == Purpose::kInfos)
         continue;
       ours->match(graph_.matching(ours->topic, ours->role));
@@ -428,41 +398,16 @@ class Helped final : public Participant::Impl {
 
   // Its successor's endpoints are new ones, which servers have to discover.
   void lose_all() {
-    {
-      const MutexLock lock(mutex_);
-      outbox_.close();
-    }
+    ours_.close();
     is_settled_ = false;
     const Time now = live_now();
-    for (const OursPtr& ours : all_ours()) {
+    for (const OursPtr& ours : ours_.all()) {
       if (now < later(ours->came_last, kFlows)) awaited_.insert(ours->id);
       ours->match({});
     }
   }
 
   // ---- small parts
-
-  OursPtr find(std::uint32_t id) {
-    const MutexLock lock(mutex_);
-    const auto found = ours_.find(id);
-    return found == ours_.end() ? nullptr : found->second;
-  }
-
-  std::vector<OursPtr> all_ours() {
-    const MutexLock lock(mutex_);
-    std::vector<OursPtr> all;
-    for (const auto& [id, ours] : ours_) all.push_back(ours);
-    return all;
-  }
-
-  std::vector<OursPtr> readers_of(Purpose purpose, const std::string& name) {
-    const MutexLock lock(mutex_);
-    std::vector<OursPtr> found;
-    for (const auto& [id, ours] : ours_) {
-      if (ours->reads(purpose, name)) found.push_back(ours);
-    }
-    return found;
-  }
 
   void sleep(Duration pause) {
     const Time until = later(live_now(), pause);
@@ -493,7 +438,7 @@ class Helped final : public Participant::Impl {
 
   const HelperOptions options_;
   const DiscoveryCallback on_discovery_;
-  const GuidPrefix prefix_;
+  HelperEndpoints ours_;
   const Guid guid_;
   const WakeFile wake_;
   Origins origins_;
@@ -523,10 +468,6 @@ class Helped final : public Participant::Impl {
   ConditionVariable changed_;
   bool has_joined_ CULPRIT_GUARDED_BY(mutex_) = false;  // once
   std::optional<std::string> failure_ CULPRIT_GUARDED_BY(mutex_);
-  HelperOutbox outbox_ CULPRIT_GUARDED_BY(mutex_);
-  std::map<std::uint32_t, OursPtr> ours_ CULPRIT_GUARDED_BY(mutex_);
-  std::uint32_t last_id_ CULPRIT_GUARDED_BY(mutex_) = 0;
-  std::int64_t last_number_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::function<void()> on_round_ CULPRIT_GUARDED_BY(mutex_);
 
   std::thread thread_;
@@ -567,80 +508,21 @@ class HelpedWriter final : public Writer::Impl {
   const std::shared_ptr<Ours> ours_;
 };
 
-Expected<std::shared_ptr<Ours>> Helped::add(EndpointRole role, const std::string& topic,
-                                            const std::string& type, const Qos& qos, PayloadUse use,
-                                            SampleCallback on_sample, MatchCallback on_match) {
-  auto meaning = Ours::meaning_of(topic, type);
-  if (!meaning) return Error{printable(topic) + " is no topic of ROS 2"};
-  auto ours = std::make_shared<Ours>();
-  ours->role = role;
-  ours->meaning = std::move(*meaning);
-  ours->topic = topic;
-  ours->use = use;
-  ours->on_sample = std::move(on_sample);
-  ours->on_match = std::move(on_match);
-  {
-    const MutexLock lock(mutex_);
-    ours->id = ++last_id_;
-    ours->guid = own_guid(prefix_, ours->id, ours->reads() ? 0x04 : 0x03);
-    ours->wish = ours->asks_for(qos);
-    ours_.emplace(ours->id, ours);
-    if (ours->wish) outbox_.queue(*ours->wish);
-    if (ours->reads() && ours->meaning.purpose == Purpose::kInfos) infos_are_due_ = true;
-    rematches_ = true;
-  }
-  wake_.wake();
-  return ours;
-}
-
 Expected<std::unique_ptr<Reader>> Helped::create_reader(ReaderOptions options,
                                                         SampleCallback on_sample) {
-  auto ours = add(EndpointRole::kReader, options.topic, options.type, options.qos, options.payload,
-                  std::move(on_sample), std::move(options.on_match));
+  auto ours = ours_.add(EndpointRole::kReader, options.topic, options.type, options.qos,
+                        options.payload, std::move(on_sample), std::move(options.on_match));
   if (!ours) return Error{ours.error()};
+  added(**ours);
   return std::make_unique<Reader>(std::make_unique<HelpedReader>(*this, std::move(*ours)));
 }
 
 Expected<std::unique_ptr<Writer>> Helped::create_writer(WriterOptions options) {
-  auto ours = add(EndpointRole::kWriter, options.topic, options.type, options.qos,
-                  PayloadUse::kWhole, {}, std::move(options.on_match));
+  auto ours = ours_.add(EndpointRole::kWriter, options.topic, options.type, options.qos,
+                        PayloadUse::kWhole, {}, std::move(options.on_match));
   if (!ours) return Error{ours.error()};
+  added(**ours);
   return std::make_unique<Writer>(std::make_unique<HelpedWriter>(*this, std::move(*ours)));
-}
-
-std::optional<std::int64_t> Helped::write(const Ours& ours, ByteView payload,
-                                          const SampleIdentity& related) {
-  std::int64_t number = 0;
-  {
-    const MutexLock lock(mutex_);
-    number = ++last_number_;
-    link::Bytes bytes(payload.begin(), payload.end());
-    switch (ours.meaning.purpose) {
-      case Purpose::kTopic:
-        if (!outbox_.queue(link::Publish{ours.id, std::move(bytes)})) return std::nullopt;
-        break;
-      case Purpose::kRequest:
-        if (!outbox_.queue(link::Request{ours.id, number, std::move(bytes)})) return std::nullopt;
-        break;
-      case Purpose::kReply:
-        for (const auto& [id, each] : ours_) {
-          if (each->reads(Purpose::kRequest, ours.meaning.name))
-            outbox_.queue(link::Respond{id, related.sequence, bytes});
-        }
-        break;
-      case Purpose::kOwn: {
-        link::Bytes echo(sizeof ours.id);
-        std::memcpy(echo.data(), &ours.id, sizeof ours.id);
-        echo.insert(echo.end(), payload.begin(), payload.end());
-        if (!outbox_.queue(link::Echo{std::move(echo)})) return std::nullopt;
-        break;
-      }
-      case Purpose::kInfos:  // the helper's middleware announces its node
-        break;
-    }
-  }
-  wake_.wake();
-  return number;
 }
 
 }  // namespace
