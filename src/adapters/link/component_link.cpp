@@ -75,6 +75,7 @@ ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string
       inbox_(inbox),
       types_(types),
       starvation_(starvation),
+      clients_(self, node_, needs_, inbox),
       tasks_(self.context().executor()) {}
 
 void ComponentLink::lives_in(int pid, const GuidPrefix& participant) {
@@ -83,19 +84,7 @@ void ComponentLink::lives_in(int pid, const GuidPrefix& participant) {
     const MutexLock lock(claimed_mutex_);
     claimed_.holder = participant;
   }
-  const MutexLock lock(mutex_);
-  holder_ = participant;
-  for (const auto* client :
-       {&lifecycle_, &lifecycle_reader_, &parameters_, &parameter_reader_, &parameter_names_})
-    if (*client) (*client)->ask_only(participant);
-  for (const auto& [name, client] : routines_)
-    if (client) client->ask_only(participant);
-}
-
-void ComponentLink::modes_come_from(const GuidPrefix& participant) {
-  const MutexLock lock(mutex_);
-  mode_holder_ = participant;
-  if (modes_) modes_->ask_only(participant);
+  clients_.ask_only(participant);
 }
 
 void ComponentLink::service_seen(const GraphEndpoint& seen) {
@@ -121,99 +110,13 @@ void ComponentLink::service_seen(const GraphEndpoint& seen) {
     read_parameters();
     note_that_it_answers();
   }
-  if (service == node_ + "/change_mode" && needs_.changes_modes) modes();
-}
-
-// ---- clients
-
-ServiceClient* ComponentLink::make(std::unique_ptr<ServiceClient>& client,
-                                   const std::string& service, std::string_view type,
-                                   const Qos& qos, std::optional<ServiceClient::Probe> probe) {
-  const MutexLock lock(mutex_);
-  if (client) return client.get();
-  const ServiceName name{service, std::string(type)};
-  return keep(client, service,
-              probe ? ServiceClient::create(self_, name, qos, std::move(*probe))
-                    : ServiceClient::create(self_, name, qos));
-}
-
-ServiceClient* ComponentLink::make_reader(std::unique_ptr<ServiceClient>& client,
-                                          const std::string& service, std::string_view type,
-                                          const Qos& qos) {
-  const MutexLock lock(mutex_);
-  if (client) return client.get();
-  return keep(client, service,
-              ServiceClient::create(self_, {service, std::string(type)}, qos, Haste::kSoon));
-}
-
-ServiceClient* ComponentLink::keep(std::unique_ptr<ServiceClient>& client,
-                                   const std::string& service,
-                                   Expected<std::unique_ptr<ServiceClient>> made) {
-  if (!made) {
-    inbox_.put(LinkTrouble{"cannot call " + service + ": " + made.error()});
-    return nullptr;
-  }
-  client = std::move(*made);
-  const auto& holder = &client == &modes_ ? mode_holder_ : holder_;
-  if (holder) client->ask_only(*holder);
-  return client.get();
-}
-
-ServiceClient* ComponentLink::lifecycle() {
-  return make(lifecycle_, node_ + "/change_state", srv::ChangeState::kType, qos::kServices,
-              {{{node_ + "/get_state", std::string(srv::GetState::kType)},
-                encode(srv::GetState::Request{})}});
-}
-
-ServiceClient* ComponentLink::lifecycle_reader() {
-  if (!needs_.changes_lifecycle)
-    return make_reader(lifecycle_reader_, node_ + "/get_state", srv::GetState::kType,
-                       qos::kServices);
-  ServiceClient* client = lifecycle();
-  return client == nullptr ? nullptr : client->probe();
-}
-
-ServiceClient* ComponentLink::parameters() {
-  return make(parameters_, node_ + "/set_parameters", srv::SetParameters::kType,
-              qos::kParameterServices,
-              {{{node_ + "/get_parameters", std::string(srv::GetParameters::kType)},
-                encode(srv::GetParameters::Request{})}});
-}
-
-ServiceClient* ComponentLink::parameter_reader() {
-  if (!needs_.sets_parameters)
-    return make_reader(parameter_reader_, node_ + "/get_parameters", srv::GetParameters::kType,
-                       qos::kParameterServices);
-  ServiceClient* client = parameters();
-  return client == nullptr ? nullptr : client->probe();
-}
-
-ServiceClient* ComponentLink::modes() {
-  return make(
-      modes_, node_ + "/change_mode", srv::ChangeMode::kType, qos::kServices,
-      {{{node_ + "/get_mode", std::string(srv::GetMode::kType)}, encode(srv::GetMode::Request{})}});
-}
-
-ServiceClient* ComponentLink::routine(const std::string& service, const std::string& type) {
-  std::unique_ptr<ServiceClient>* place = nullptr;
-  {
-    const MutexLock lock(mutex_);
-    place = &routines_[service];
-  }
-  return make(*place, service, type, qos::kServices,
-              {{{node_ + "/get_parameters", std::string(srv::GetParameters::kType)},
-                encode(srv::GetParameters::Request{})}});
+  if (service == node_ + "/change_mode" && needs_.changes_modes) clients_.modes();
 }
 
 // ---- what is read without being commanded
 
-bool ComponentLink::has_lifecycle() {
-  const MutexLock lock(mutex_);
-  return lifecycle_ || lifecycle_reader_;
-}
-
 void ComponentLink::check_lifecycle() {
-  ServiceClient* client = has_lifecycle() ? lifecycle_reader() : nullptr;
+  ServiceClient* client = clients_.has_lifecycle() ? clients_.lifecycle_reader() : nullptr;
   if (client == nullptr) return;
   client->call(
       encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kProbe,
@@ -228,7 +131,7 @@ void ComponentLink::ask_again() {
 }
 
 void ComponentLink::read_first_state(Haste haste) {
-  ServiceClient* client = lifecycle_reader();
+  ServiceClient* client = clients_.lifecycle_reader();
   if (client == nullptr) return;
   asking_state_.asks();
   client->call(
@@ -281,7 +184,7 @@ void ComponentLink::on_transition(const Sample& sample) {
 }
 
 void ComponentLink::ask_for_transition() {
-  ServiceClient* client = lifecycle_reader();
+  ServiceClient* client = clients_.lifecycle_reader();
   std::optional<Claim> claim;
   {
     const MutexLock lock(claimed_mutex_);
@@ -325,7 +228,7 @@ bool ComponentLink::was_shut_down(const Claim& claim) {
 }
 
 void ComponentLink::read_parameters() {
-  ServiceClient* client = parameter_reader();
+  ServiceClient* client = clients_.parameter_reader();
   if (client == nullptr) return;
   for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
     if (rules_.parameters[p].component != component_) continue;
@@ -350,7 +253,7 @@ void ComponentLink::read_parameters() {
 }
 
 void ComponentLink::ask_time_source(std::function<void(bool)> then) {
-  ServiceClient* client = parameter_reader();
+  ServiceClient* client = clients_.parameter_reader();
   if (client == nullptr) return;
   then_of_time_ = std::move(then);
   asking_time_.asks();
@@ -375,18 +278,8 @@ void ComponentLink::note_that_it_answers() {
 
 void ComponentLink::check_parameters() {
   if (!misses_parameter_.exchange(false)) return;
-  ServiceClient* client = nullptr;
-  {
-    const MutexLock lock(mutex_);
-    if (!parameter_names_) {
-      const ServiceName name{node_ + "/list_parameters", std::string(srv::ListParameters::kType)};
-      auto made = ServiceClient::create(self_, name, qos::kParameterServices);
-      if (!made) return;  // a secured domain need not allow it
-      parameter_names_ = std::move(*made);
-      if (holder_) parameter_names_->ask_only(*holder_);
-    }
-    client = parameter_names_.get();
-  }
+  ServiceClient* client = clients_.parameter_names();
+  if (client == nullptr) return;
   client->call(encode(srv::ListParameters::Request{}), Repeat::kUntilAnswered, kJoining,
                [this](const CallResult& result) {
                  constexpr std::size_t kMost = 1000;
@@ -450,8 +343,8 @@ void ComponentLink::ask(std::function<void(std::optional<GuidPrefix> answered)> 
 // If the node has a lifecycle, this reads its state, and reports it as check_lifecycle() does.
 bool ComponentLink::read_anything(Duration patience, Haste haste,
                                   std::function<void(const CallResult&)> then) {
-  const bool is_managed = has_lifecycle();
-  ServiceClient* client = is_managed ? lifecycle_reader() : parameter_reader();
+  const bool is_managed = clients_.has_lifecycle();
+  ServiceClient* client = is_managed ? clients_.lifecycle_reader() : clients_.parameter_reader();
   if (client == nullptr) return false;
   if (!is_managed) {
     client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, patience,
@@ -519,14 +412,14 @@ void ComponentLink::ask(ServiceClient* client, const typename Service::Request& 
 
 void ComponentLink::run(const Command& command, const ChangeLifecycle& what) {
   ask<srv::ChangeState>(
-      lifecycle(), {to_message(what.transition)}, Repeat::kNever, command,
+      clients_.lifecycle(), {to_message(what.transition)}, Repeat::kNever, command,
       [](const srv::ChangeState::Response& response) {
         return Answer{response.success ? Outcome::kDone : Outcome::kRefused, {}, ""};
       });
 }
 
 void ComponentLink::run(const Command& command, const ReadLifecycle&) {
-  ask<srv::GetState>(lifecycle_reader(), {}, Repeat::kUntilAnswered, command,
+  ask<srv::GetState>(clients_.lifecycle_reader(), {}, Repeat::kUntilAnswered, command,
                      [this](const srv::GetState::Response& response) {
                        const Lifecycle state = to_lifecycle(response.current_state.id);
                        tell(state, Told::kAlways);
@@ -565,7 +458,7 @@ void ComponentLink::run(const Command& command, const SetParameter& what) {
   auto value = to_set(what.name, what.value);
   if (!value) return reply(command, {Outcome::kRefused, {}, value.error()});
   ask<srv::SetParameters>(
-      parameters(), {{{what.name, std::move(*value)}}}, Repeat::kNever, command,
+      clients_.parameters(), {{{what.name, std::move(*value)}}}, Repeat::kNever, command,
       [name = what.name](const srv::SetParameters::Response& response) {
         if (response.results.size() != 1) {
           return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
@@ -576,15 +469,14 @@ void ComponentLink::run(const Command& command, const SetParameter& what) {
 }
 
 void ComponentLink::run(const Command& command, const ReadParameter& what) {
-  ask<srv::GetParameters>(parameter_reader(), {{what.name}}, Repeat::kUntilAnswered, command,
-                          [this, name = what.name](const srv::GetParameters::Response& response) {
-                            auto value = response.values.size() == 1
-                                             ? read_value(name, response.values[0])
-                                             : std::nullopt;
-                            if (!value)
-                              return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
-                            return Answer{Outcome::kDone, std::move(*value), ""};
-                          });
+  ask<srv::GetParameters>(
+      clients_.parameter_reader(), {{what.name}}, Repeat::kUntilAnswered, command,
+      [this, name = what.name](const srv::GetParameters::Response& response) {
+        auto value =
+            response.values.size() == 1 ? read_value(name, response.values[0]) : std::nullopt;
+        if (!value) return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
+        return Answer{Outcome::kDone, std::move(*value), ""};
+      });
 }
 
 void ComponentLink::run(const Command& command, const CallService& what) {
@@ -610,7 +502,7 @@ void ComponentLink::run(const Command& command, const CallService& what) {
 
 void ComponentLink::call(const Command& command, const std::string& type,
                          const std::string& service, const ServiceCall& call) {
-  ServiceClient* client = routine(service, type);
+  ServiceClient* client = clients_.routine(service, type);
   if (client == nullptr)
     return reply(command, {Outcome::kUnreachable, {}, "no client could be made"});
   client->call(
@@ -626,13 +518,14 @@ void ComponentLink::call(const Command& command, const std::string& type,
 
 void ComponentLink::run(const Command& command, const ChangeMode& what) {
   ask<srv::ChangeMode>(
-      modes(), {what.mode}, Repeat::kNever, command, [](const srv::ChangeMode::Response& response) {
+      clients_.modes(), {what.mode}, Repeat::kNever, command,
+      [](const srv::ChangeMode::Response& response) {
         return Answer{response.success ? Outcome::kDone : Outcome::kRefused, {}, ""};
       });
 }
 
 void ComponentLink::run(const Command& command, const ReadMode&) {
-  ServiceClient* client = modes();
+  ServiceClient* client = clients_.modes();
   ask<srv::GetMode>(client == nullptr ? nullptr : client->probe(), {}, Repeat::kUntilAnswered,
                     command, [](const srv::GetMode::Response& response) {
                       return Answer{Outcome::kDone, Value(response.current_mode), ""};

@@ -1,11 +1,8 @@
 // The requests that culprit makes to one component's node: its lifecycle, its parameters, its
 // modes, its routines.
 //
-// Clients are made when the node is discovered to offer a service, or at the first command that
-// needs it, and kept: a client that the server knows already needs no discovery when every
-// millisecond counts. Each service that changes something has a read of the same node as its probe
-// (service_client.h). So a request is neither lost to discovery nor sent twice. If the rules only
-// look at a node, its client only reads, so a secured domain need not allow more (policy.h).
+// Its clients are made when the node is discovered to offer a service, or at the first command that
+// needs it, and kept (component_clients.h).
 #pragma once
 
 #include <atomic>
@@ -19,6 +16,8 @@
 #include "base/mutex.h"
 #include "inbox/inbox.h"
 #include "language/rule_set.h"
+#include "link/asking.h"
+#include "link/component_clients.h"
 #include "link/component_needs.h"
 #include "link/processor_time.h"
 #include "link/starvation.h"
@@ -49,7 +48,7 @@ class ComponentLink {
   void lives_in(int pid, const GuidPrefix& participant);
 
   // Its modes come from this participant: its own, or that of a mode manager.
-  void modes_come_from(const GuidPrefix& participant);
+  void modes_come_from(const GuidPrefix& participant) { clients_.modes_come_from(participant); }
 
   // Reads the parameters again: an event announced that they changed.
   void check_values() { read_parameters(); }
@@ -124,27 +123,6 @@ class ComponentLink {
 
   // The cheap read. `then` is called with its result; not at all if no client could be made.
   bool read_anything(Duration patience, Haste haste, std::function<void(const CallResult&)> then);
-  bool has_lifecycle();
-  // A question to a node that was just discovered, until it is answered.
-  class Asking {
-   public:
-    static constexpr int kMost = 60;  // of 5 s each
-
-    // The node was discovered: from now on it counts.
-    void begin() { left_ = kMost; }
-    void asks() { ++under_way_; }
-    void ends(const CallResult& result) {
-      if (result.outcome == CallOutcome::kTimedOut) is_open_ = true;
-      --under_way_;
-    }
-    // Once for each time that it was left unanswered.
-    bool is_due() { return under_way_ == 0 && is_open_.exchange(false) && left_-- > 0; }
-
-   private:
-    std::atomic<int> under_way_ = 0;
-    std::atomic<bool> is_open_ = false;
-    int left_ = 0;  // of the executor's thread
-  };
   void read_first_state(Haste haste);
   enum class Told : std::uint8_t { kAlways, kIfNew };
   void on_lifecycle(const CallResult& result, Told told);
@@ -164,21 +142,6 @@ class ComponentLink {
   void read_parameters();
   void note_that_it_answers();
 
-  ServiceClient* lifecycle();
-  ServiceClient* lifecycle_reader();
-  ServiceClient* parameters();
-  ServiceClient* parameter_reader();
-  ServiceClient* modes();
-  ServiceClient* routine(const std::string& service, const std::string& type);
-  ServiceClient* make(std::unique_ptr<ServiceClient>& client, const std::string& service,
-                      std::string_view type, const Qos& qos,
-                      std::optional<ServiceClient::Probe> probe = {});
-  // Makes a client that only reads.
-  ServiceClient* make_reader(std::unique_ptr<ServiceClient>& client, const std::string& service,
-                             std::string_view type, const Qos& qos);
-  ServiceClient* keep(std::unique_ptr<ServiceClient>& client, const std::string& service,
-                      Expected<std::unique_ptr<ServiceClient>> made) CULPRIT_REQUIRES(mutex_);
-
   NodeEntry& self_;
   const ComponentId component_;
   const std::string node_;
@@ -195,17 +158,8 @@ class ComponentLink {
   Asking asking_state_, asking_values_, asking_time_, asking_anything_;
   std::function<void(bool)> then_of_time_;  // of the executor's thread
 
+  ComponentClients clients_;
   Mutex mutex_;  // never held while calling
-  std::optional<GuidPrefix> mode_holder_ CULPRIT_GUARDED_BY(mutex_);
-  std::optional<GuidPrefix> holder_ CULPRIT_GUARDED_BY(mutex_);  // whose answers count
-  // The clients are made with it, by make(), and stay.
-  std::unique_ptr<ServiceClient> lifecycle_;
-  std::unique_ptr<ServiceClient> lifecycle_reader_;  // where the rules only look
-  std::unique_ptr<ServiceClient> parameters_;
-  std::unique_ptr<ServiceClient> parameter_reader_;  // likewise
-  std::unique_ptr<ServiceClient> parameter_names_;   // if one was missing
-  std::unique_ptr<ServiceClient> modes_;
-  std::map<std::string, std::unique_ptr<ServiceClient>> routines_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, TypeFinder::Offer> services_
       CULPRIT_GUARDED_BY(mutex_);        // that the node offers, by name
   std::optional<ProcessorLook> looked_;  // when it did not answer last; of the executor's thread
