@@ -183,8 +183,7 @@ void LiveRun::change_rules(Next next, OrderTaker& desk) {
     return session_->announce(announcements::kNotReloaded,
                               "the rules are not reloaded: " + opened.error());
   close(desk);
-  LiveSession::Handover handover =
-      session_->hand_over((*opened)->rules(), "reloaded by " + next.author);
+  Handover handover = session_->hand_over((*opened)->rules(), "reloaded by " + next.author);
   session_ = std::move(*opened);
   session_->begin(std::move(handover));
   session_->announce(

@@ -11,6 +11,7 @@
 #include "journal/inheritance.h"
 #include "journal/session.h"
 #include "live/fleet.h"
+#include "live/handover.h"
 #include "live/listener.h"
 #include "live/live_robot.h"
 #include "live/observer.h"
@@ -60,14 +61,6 @@ class LiveSession {
     std::optional<Expected<journal::Inheritance>> told_inheritance{};
     // The process of the other culprit that managed until now (RoleOfCulprit::manager_before()).
     std::optional<int> manager_before{};
-  };
-  // A session's legacy to the next one.
-  struct Handover {
-    journal::Learned learned;
-    KnownRobot known_robot;
-    History verdicts;                 // that do not count yet
-    std::vector<Observation> orders;  // of people, that still hold
-    std::string occasion;             // why there is a next one
   };
 
   ~LiveSession();
