@@ -8,8 +8,8 @@
 #include "base/text_file.h"
 #include "json/json.h"
 #include "language/functions.h"
-#include "language/line_reader.h"
 #include "language/parser.h"
+#include "language/reserved_words.h"
 #include "language/syntax.h"
 
 namespace culprit {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "language/line_reader.h"
+#include "language/reserved_words.h"
 #include "language/scanner.h"
 
 namespace culprit {

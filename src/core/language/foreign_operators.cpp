@@ -9,6 +9,7 @@
 
 #include "language/functions.h"
 #include "language/line_reader.h"
+#include "language/reserved_words.h"
 
 namespace culprit {
 namespace {

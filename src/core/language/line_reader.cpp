@@ -7,38 +7,12 @@
 #include "base/joined.h"
 #include "language/expression_parser.h"
 #include "language/foreign_words.h"
+#include "language/reserved_words.h"
 
 namespace culprit {
 namespace {
 
 using syntax::Name;
-
-constexpr std::array<std::string_view, 51> kReservedWords = {
-    "ROBOT",     "CYCLE",      "CONST",    "COMPONENT", "DEPENDENCY", "IGNORE",  "SIGNAL",
-    "RULE",      "POLICIES",   "TRIGGER",  "STRATEGY",  "NODE",       "LAUNCH",  "ON",
-    "TOPIC",     "FIELD",      "STALE",    "RANGE",     "KEY",        "FOR",     "DIAGNOSTIC",
-    "PARAMETER", "HOLD",       "COOLDOWN", "ATTEMPTS",  "ON_CHANGE",  "WHEN",    "ADAPTATION",
-    "INTERLOCK", "LASTRESORT", "REQUIRED", "LIFECYCLE", "RESPAWNED",  "UNIT",    "USER",
-    "ENV",       "SETUP",      "CWD",      "IN",        "PLUGIN",     "PACKAGE", "PARAMETERS",
-    "REMAP",     "CONTAINER",  "HOST",     "WITHIN",    "READY",      "GROUP",   "MANAGER",
-    "ABORT",     "DRILL"};
-
-// They cannot be confused with a name where one may stand, so they are not reserved.
-bool is_word_of_reuse(std::string_view word) {
-  return word == "THEN" || word == "INCLUDE" || word == "TEMPLATE" || word == "USE" ||
-         word == "END";
-}
-
-bool is_reserved(std::string_view word) {
-  // Most names have something else in them.
-  if (word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_") != std::string_view::npos) return false;
-  return std::find(kReservedWords.begin(), kReservedWords.end(), word) != kReservedWords.end();
-}
-
-// Such a word cannot be a name.
-bool is_word_of_language(std::string_view word) {
-  return is_reserved(word) || word == "true" || word == "false";
-}
 
 bool is_ros_name(std::string_view name) {
   if (name.size() < 2 || name.front() != '/' || name.back() == '/') return false;
@@ -136,8 +110,6 @@ std::string upper_case(std::string_view word) {
                  [](unsigned char c) { return std::toupper(c); });
   return text;
 }
-
-std::span<const std::string_view> reserved_words() { return kReservedWords; }
 
 std::optional<Name> LineReader::identifier(Scanner& s, std::string_view what) {
   const Token token = s.next();

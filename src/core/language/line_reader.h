@@ -20,9 +20,6 @@
 
 namespace culprit {
 
-// The words that nothing can be named by.
-std::span<const std::string_view> reserved_words();
-
 std::string upper_case(std::string_view word);
 
 // A component's own name, or the full name of its node.

@@ -9,6 +9,7 @@
 
 #include "language/declaration_reader.h"
 #include "language/line_reader.h"
+#include "language/reserved_words.h"
 #include "language/reuse/statements.h"
 #include "language/rule_reader.h"
 #include "language/scanner.h"

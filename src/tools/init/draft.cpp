@@ -20,7 +20,7 @@
 #include "init/packs.h"
 #include "init/silence.h"
 #include "init/values.h"
-#include "language/line_reader.h"
+#include "language/reserved_words.h"
 
 namespace culprit::init {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cctype>
 
-#include "language/line_reader.h"
+#include "language/reserved_words.h"
 
 namespace culprit::init {
 namespace {
