@@ -13,7 +13,7 @@
 #include "cli/commands.h"
 #include "cli/run_recording.h"
 #include "cli/unit_settings.h"
-#include "link/policy.h"
+#include "link/rights.h"
 #include "live/rule_file.h"
 #include "live/snapshots.h"
 #include "ros2/options.h"

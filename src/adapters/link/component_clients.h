@@ -3,7 +3,7 @@
 // Each is made at the first use, and kept: a client that the server knows already needs no discovery when every
 // millisecond counts. Each service that changes something has a read of the same node as its probe
 // (service_client.h). So a request is neither lost to discovery nor sent twice. If the rules only
-// look at a node, its client only reads, so a secured domain need not allow more (policy.h).
+// look at a node, its client only reads, so a secured domain need not allow more (rights.h).
 #pragma once
 
 #include <map>

@@ -55,9 +55,11 @@ Link::Link(const RuleSet& rules, Options options, Inbox& inbox)
       options_(std::move(options)),
       inbox_(inbox),
       binding_(rules),
-      departures_(
+      leaving_(
           executor_, inbox,
-          [this](const std::string& node, Departures::Then then) { ask(node, std::move(then)); },
+          [this](const std::string& node, LeavingAnnouncements::Then then) {
+            ask(node, std::move(then));
+          },
           [this](const std::string& node, bool was_lost) { vanished(node, was_lost); }),
       links_(rules.components.size()) {}
 
@@ -129,7 +131,7 @@ Graph::Options Link::graph_options() {
   };
   graph.is_asked_about = [this](const std::string& node) {
     const auto component = binding_.bind(node);
-    return component && departures_.is_doubted(*component, node);
+    return component && leaving_.is_doubted(*component, node);
   };
   return graph;
 }
@@ -155,7 +157,7 @@ Expected<void> Link::join() {
   context_->participant().on_round([this] { inbox_.hand_over(); });
   datagrams_.emplace(*context_, inbox_, options_.participant.helper != nullptr);
   context_->on_discovery([this](const DiscoveryEvent& event) { on_discovery(event); });
-  departures_.watch(*context_);
+  leaving_.watch(*context_);
   hosts_ = std::make_unique<ComponentHosts>(
       [this](const GuidPrefix& participant) {
         return context_->participant().heard_last(participant);
@@ -286,7 +288,7 @@ void Link::on_change(const GraphChange& change) {
     contests_.seen(*namesakes, is_ours(namesakes->node), live_now());
     inbox_.put(NamesakesSeen{namesakes->node, namesakes->others});
   } else if (const auto* doubted = std::get_if<NodeSaidToLeave>(&change)) {
-    departures_.said_to_leave(doubted->node);
+    leaving_.said_to_leave(doubted->node);
   } else if (const auto* trouble = std::get_if<GraphTrouble>(&change)) {
     inbox_.put(LinkTrouble{trouble->text});
   }
@@ -339,10 +341,10 @@ void Link::on_joined(const GraphNode& node) {
   diagnostics_watch_->node_joined(node.name);
   if (node.name == node_->name().full()) namesake_.joined(node, live_now());
   mode_managers_.node_joined(node.name);
-  departures_.is_back(node.name);
+  leaving_.is_back(node.name);
   const auto component = binding_.bind(node.name);
   if (!component) return;
-  departures_.joined(node);
+  leaving_.joined(node);
   if (other_nodes_->has(*component, node.name)) return other_nodes_->joined(*component, node);
   make_link(*component, node.name)->lives_in(node.pid, node.participant);
   hosts_->lives_on(*component, host);
@@ -360,12 +362,12 @@ void Link::on_left(const std::string& node, bool was_lost) {
   diagnostics_watch_->node_left(node);
   mode_managers_.node_left(node);
   if (node == node_->name().full()) namesake_.left();
-  departures_.left(node, was_lost);
+  leaving_.left(node, was_lost);
 }
 
 // Whether the node is there, and which participant answers for it. The middleware may know its
 // services still, if a message in its name announced only that it holds no node.
-void Link::ask(const std::string& node, Departures::Then then) {
+void Link::ask(const std::string& node, LeavingAnnouncements::Then then) {
   const auto component = binding_.bind(node);
   if (!component) return then(std::nullopt);
   if (other_nodes_->has(*component, node)) return other_nodes_->ask(node, std::move(then));

@@ -25,9 +25,9 @@
 #include "link/component_hosts.h"
 #include "link/component_link.h"
 #include "link/datagram_troubles.h"
-#include "link/departures.h"
 #include "link/diagnostics_watch.h"
 #include "link/lease_link.h"
+#include "link/leaving_announcements.h"
 #include "link/listening_proof.h"
 #include "link/log_watch.h"
 #include "link/mode_managers.h"
@@ -101,7 +101,7 @@ class Link {
 
   // The component's node was ordered to leave: until then the node is not asked whether it left.
   // From any thread.
-  void expect_departure(ComponentId component, Time until) { departures_.expect(component, until); }
+  void expect_departure(ComponentId component, Time until) { leaving_.expect(component, until); }
   // An earlier run had proven that a process of this machine has this node. From any thread.
   void note_proven_here(const std::string& node) { context_->note_proven_here(node); }
 
@@ -144,7 +144,7 @@ class Link {
   void give_memory_back_soon();
   void on_joined(const GraphNode& node);
   void on_left(const std::string& node, bool was_lost);
-  void ask(const std::string& node, Departures::Then then);
+  void ask(const std::string& node, LeavingAnnouncements::Then then);
   void vanished(const std::string& node, bool was_lost);
   bool is_ours(const std::string& node);
   GuidPrefix participant_of(const std::string& node) const;
@@ -189,7 +189,7 @@ class Link {
   std::map<std::string, ToProbe> probed_;     // by node
   std::map<ComponentId, UsageMeter> meters_;  // of those whose usage the rules read
   std::unique_ptr<OtherNodes> other_nodes_;
-  Departures departures_;
+  LeavingAnnouncements leaving_;
   NameContests contests_;
   Namesake namesake_;
   Starvation starvation_;

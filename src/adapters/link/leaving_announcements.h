@@ -29,7 +29,7 @@
 namespace culprit::ros2 {
 
 // On the executor's thread, but for expect(), which any thread may call.
-class Departures {
+class LeavingAnnouncements {
  public:
   // Asks whether the node is there, and gives the participant that answered, if any does. `then` may be called on
   // any thread, and before this returns.
@@ -39,7 +39,7 @@ class Departures {
   using Left = std::function<void(const std::string& node, bool was_lost)>;
 
   // `executor` and `inbox` outlive it.
-  Departures(Executor& executor, Inbox& inbox, Ask ask, Left left);
+  LeavingAnnouncements(Executor& executor, Inbox& inbox, Ask ask, Left left);
   // Before the first node joins. It outlives the last call.
   void watch(Context& context) { context_ = &context; }
 

@@ -1,4 +1,4 @@
-#include "link/policy.h"
+#include "link/rights.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // The rights of whole rule files are golden files; that culprit gets along with them on a secured
 // domain, and with nothing less, is shown by cli/secured_live_test.cpp.
-#include "link/policy.h"
+#include "link/rights.h"
 
 #include <cstdlib>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "link/departures.h"
+#include "link/leaving_announcements.h"
 
 #include <utility>
 
@@ -12,25 +12,25 @@ constexpr auto kLeavingAskedAgain = std::chrono::seconds(2);
 
 }  // namespace
 
-Departures::Departures(Executor& executor, Inbox& inbox, Ask ask, Left left)
+LeavingAnnouncements::LeavingAnnouncements(Executor& executor, Inbox& inbox, Ask ask, Left left)
     : inbox_(inbox), ask_(std::move(ask)), left_(std::move(left)), tasks_(executor) {}
 
-void Departures::is_back(const std::string& node) {
+void LeavingAnnouncements::is_back(const std::string& node) {
   leaving_.erase(node);
   unproven_.erase(node);
 }
 
-void Departures::joined(const GraphNode& node) {
+void LeavingAnnouncements::joined(const GraphNode& node) {
   if (node.pid == 0) unproven_[node.name] = {node.vendor, node.participant};
 }
 
-void Departures::left(const std::string& node, bool was_lost) {
+void LeavingAnnouncements::left(const std::string& node, bool was_lost) {
   const auto unproven = unproven_.extract(node);
   if (unproven) return doubt(node, {unproven.mapped(), was_lost});
   left_(node, was_lost);
 }
 
-void Departures::doubt(const std::string& node, Leaving leaving) {
+void LeavingAnnouncements::doubt(const std::string& node, Leaving leaving) {
   constexpr auto kOfFastDds = std::chrono::seconds(4);
   constexpr auto kOfOthers = std::chrono::seconds(9);
   const auto patience = leaving.node.vendor == Vendor::kFastDds ? kOfFastDds : kOfOthers;
@@ -42,7 +42,7 @@ void Departures::doubt(const std::string& node, Leaving leaving) {
 
 // The middleware may know its services still, if a message in its name announced only that it holds
 // no node.
-void Departures::ask_leaving(const std::string& node, std::uint64_t doubt) {
+void LeavingAnnouncements::ask_leaving(const std::string& node, std::uint64_t doubt) {
   const auto found = leaving_.find(node);
   if (found == leaving_.end() || found->second.doubt != doubt) return;
   ask_(node, [this, node, doubt](std::optional<GuidPrefix> answered) {
@@ -50,8 +50,8 @@ void Departures::ask_leaving(const std::string& node, std::uint64_t doubt) {
   });
 }
 
-void Departures::believe(const std::string& node, std::optional<GuidPrefix> answered,
-                         std::uint64_t doubt_asked) {
+void LeavingAnnouncements::believe(const std::string& node, std::optional<GuidPrefix> answered,
+                                   std::uint64_t doubt_asked) {
   const auto found = leaving_.find(node);
   if (found == leaving_.end() || found->second.doubt != doubt_asked) return;
   Leaving leaving = found->second;
@@ -67,17 +67,17 @@ void Departures::believe(const std::string& node, std::optional<GuidPrefix> answ
 }
 
 // The node announces it, or another program does in its name.
-void Departures::said_to_leave(const std::string& node) {
+void LeavingAnnouncements::said_to_leave(const std::string& node) {
   if (asked_whether_left_.insert(node).second) tasks_.post([this, node] { ask_again(node); });
 }
 
-void Departures::ask_again(const std::string& node) {
+void LeavingAnnouncements::ask_again(const std::string& node) {
   constexpr int kQuestions = 2;
   if (context_->graph().is_said_to_leave(node)) return ask_whether_left(node, kQuestions);
   asked_whether_left_.erase(node);
 }
 
-void Departures::ask_whether_left(const std::string& node, int questions) {
+void LeavingAnnouncements::ask_whether_left(const std::string& node, int questions) {
   ask_(node, [this, node, questions](std::optional<GuidPrefix> answered) {
     tasks_.post([this, node, questions, answers = answered.has_value()] {
       on_whether_left(node, questions, answers);
@@ -85,7 +85,7 @@ void Departures::ask_whether_left(const std::string& node, int questions) {
   });
 }
 
-void Departures::on_whether_left(const std::string& node, int questions, bool answers) {
+void LeavingAnnouncements::on_whether_left(const std::string& node, int questions, bool answers) {
   constexpr std::size_t kMost = 100;
   if (!answers && questions > 1) return ask_whether_left(node, questions - 1);
   if (!answers) {
@@ -99,13 +99,13 @@ void Departures::on_whether_left(const std::string& node, int questions, bool an
                          "present. Does another program on this network speak in its name?"});
 }
 
-void Departures::expect(ComponentId component, Time until) {
+void LeavingAnnouncements::expect(ComponentId component, Time until) {
   const MutexLock lock(mutex_);
   expected_[component] = until;
 }
 
 // One whose process is not proven is doubted when it left.
-bool Departures::is_doubted(ComponentId component, const std::string& node) const {
+bool LeavingAnnouncements::is_doubted(ComponentId component, const std::string& node) const {
   if (unproven_.contains(node)) return false;
   const MutexLock lock(mutex_);
   const auto expected = expected_.find(component);
