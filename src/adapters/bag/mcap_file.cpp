@@ -4,8 +4,8 @@
 #include <array>
 #include <numeric>
 
-#include "mcap/fields.h"
 #include "mcap/record.h"
+#include "mcap/record_fields.h"
 
 namespace culprit::bag {
 namespace {

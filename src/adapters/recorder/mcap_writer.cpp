@@ -4,8 +4,8 @@
 #include <zstd.h>
 
 #include "base/invariant.h"
-#include "mcap/fields.h"
 #include "mcap/record.h"
+#include "mcap/record_fields.h"
 
 namespace culprit::recorder {
 namespace {
