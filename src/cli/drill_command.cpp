@@ -28,7 +28,7 @@
 #include "live/rule_trust.h"
 #include "live/run_journal.h"
 #include "live/setups.h"
-#include "owners/units.h"
+#include "owners/service_units.h"
 #include "ros2/options.h"
 #include "terminal/command.h"
 #include "terminal/console.h"

@@ -12,8 +12,8 @@
 #include "owners/component_containers.h"
 #include "owners/composed_nodes.h"
 #include "owners/container_clients.h"
+#include "owners/service_units.h"
 #include "owners/supervisor.h"
-#include "owners/units.h"
 #include "robot/robot.h"
 
 namespace culprit::live {

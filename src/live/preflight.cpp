@@ -17,7 +17,7 @@
 #include "owners/parameter_file.h"
 #include "owners/plugin_index.h"
 #include "owners/remote_program.h"
-#include "owners/units.h"
+#include "owners/service_units.h"
 
 namespace culprit::live {
 namespace {

@@ -22,11 +22,11 @@
 #include "base/test_folder.h"
 #include "language/checker.h"
 #include "owners/mark.h"
+#include "owners/service_units.h"
 #include "owners/spawn.h"
 #include "owners/test_engine.h"
 #include "owners/test_process.h"
 #include "owners/test_systemd.h"
-#include "owners/units.h"
 
 namespace culprit::owners {
 namespace {

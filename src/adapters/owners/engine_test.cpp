@@ -11,10 +11,10 @@
 #include "base/live_clock.h"
 #include "language/checker.h"
 #include "owners/proc.h"
+#include "owners/service_units.h"
 #include "owners/test_asked_owner.h"
 #include "owners/test_engine.h"
 #include "owners/test_process.h"
-#include "owners/units.h"
 
 namespace culprit::owners {
 namespace {

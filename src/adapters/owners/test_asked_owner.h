@@ -13,7 +13,7 @@
 #include "base/live_clock.h"
 #include "inbox/inbox.h"
 #include "language/checker.h"
-#include "owners/units.h"
+#include "owners/service_units.h"
 
 namespace culprit::owners {
 

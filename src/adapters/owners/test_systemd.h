@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/mutex.h"
-#include "owners/units.h"
+#include "owners/service_units.h"
 
 namespace culprit::owners {
 

@@ -1,4 +1,4 @@
-#include "owners/units.h"
+#include "owners/service_units.h"
 
 #include <algorithm>
 #include <csignal>

@@ -1,7 +1,7 @@
 // Requests to systemd, and how its answers are read. The server is a stand-in that speaks systemd's
 // published interface on a real dbus-daemon and really runs a process for each unit;
 // units_live_test.cpp asks systemd itself.
-#include "owners/units.h"
+#include "owners/service_units.h"
 
 #include <csignal>
 #include <sys/ptrace.h>
