@@ -10,7 +10,7 @@
 
 #include "base/expected.h"
 #include "base/text_file.h"
-#include "language/origins.h"
+#include "language/text_origins.h"
 
 namespace culprit {
 

@@ -1,11 +1,11 @@
-// A text under construction whose parts know where they were written (origins.h).
+// A text under construction whose parts know where they were written (text_origins.h).
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "language/origins.h"
+#include "language/text_origins.h"
 
 namespace culprit {
 

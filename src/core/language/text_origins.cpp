@@ -1,4 +1,4 @@
-#include "language/origins.h"
+#include "language/text_origins.h"
 
 #include <algorithm>
 
