@@ -10,7 +10,7 @@
 #include "cli/decision_report.h"
 #include "cli/glossary.h"
 #include "cli/journal_file.h"
-#include "doctor/explanations.h"
+#include "doctor/finding_explanations.h"
 #include "journal/json.h"
 #include "language/explanations.h"
 

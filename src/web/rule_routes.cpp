@@ -2,7 +2,7 @@
 
 #include "lsp/language_server.h"
 #include "rule_files/rule_files.h"
-#include "rule_graph/draft.h"
+#include "rule_graph/draft_graph.h"
 #include "rule_json/from_json.h"
 #include "rule_json/to_json.h"
 #include "web/calls.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bag_doctor/course.h"
-#include "bag_doctor/incident.h"
+#include "bag_doctor/bag_incident.h"
+#include "bag_doctor/recording_course.h"
 #include "doctor/finding.h"
 #include "json/json.h"
 

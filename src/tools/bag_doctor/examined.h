@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "bag_doctor/course.h"
 #include "bag_doctor/habit.h"
+#include "bag_doctor/recording_course.h"
 #include "bag_doctor/symptom.h"
 
 namespace culprit::bag_doctor {

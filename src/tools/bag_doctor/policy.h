@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bag_doctor/course.h"
+#include "bag_doctor/recording_course.h"
 #include "base/units.h"
 #include "doctor/finding.h"
 

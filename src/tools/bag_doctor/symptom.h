@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bag_doctor/course.h"
+#include "bag_doctor/recording_course.h"
 #include "doctor/finding.h"
 #include "knowledge/onset.h"
 

@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "doctor/examine.h"
-#include "doctor/explanations.h"
+#include "doctor/finding_explanations.h"
 #include "doctor/held_up.h"
 #include "doctor/wording.h"
 #include "json/json.h"

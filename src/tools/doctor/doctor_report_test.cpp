@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "doctor/explanations.h"
+#include "doctor/finding_explanations.h"
 #include "doctor/held_up.h"
 #include "json/json.h"
 

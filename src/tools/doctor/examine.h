@@ -4,7 +4,7 @@
 //     for (const doctor::Finding& finding : doctor::examine(*picture)) print(finding);
 //
 // A finding is a claim that something is wrong, and a false one is a bug: where what was seen has
-// an innocent explanation that the picture does not rule out, nothing is found. explanations.h says
+// an innocent explanation that the picture does not rule out, nothing is found. finding_explanations.h says
 // of each code when it is reported, and when not.
 #pragma once
 

@@ -26,7 +26,7 @@ struct When {
 };
 
 struct Finding {
-  std::string code;  // "D001": explanations.h has a page for each
+  std::string code;  // "D001": finding_explanations.h has a page for each
   Gravity gravity = Gravity::kError;
   std::string subject;               // "/scan: /lidar_driver → /slam"
   std::string seen;                  // what was seen

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/expected.h"
-#include "import/writer.h"
+#include "import/rule_writer.h"
 #include "language/source.h"
 
 namespace culprit {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "incident_reports/incident.h"
+#include "incident_reports/incident_requests.h"
 #include "incident_reports/recorded_curves.h"
-#include "incident_reports/requests.h"
 
 namespace culprit::incident_reports {
 

@@ -10,8 +10,8 @@
 #include "base/ros_names.h"
 #include "base/tool_names.h"
 #include "base/units.h"
+#include "init/draft_names.h"
 #include "init/measures.h"
-#include "init/names.h"
 
 namespace culprit::init {
 namespace {

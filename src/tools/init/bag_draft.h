@@ -15,7 +15,7 @@
 #include <span>
 #include <string>
 
-#include "bag_doctor/course.h"
+#include "bag_doctor/recording_course.h"
 
 namespace culprit::init {
 

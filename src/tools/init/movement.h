@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "init/names.h"
+#include "init/draft_names.h"
 #include "init/robot_profile.h"
 
 namespace culprit::init {

@@ -1,4 +1,4 @@
-#include "rule_graph/draft.h"
+#include "rule_graph/draft_graph.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "bag_doctor/course.h"
+#include "bag_doctor/recording_course.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "incident_reports/requests.h"
+#include "incident_reports/incident_requests.h"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "init/names.h"
+#include "init/draft_names.h"
 
 #include <cctype>
 

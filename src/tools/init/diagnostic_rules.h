@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "init/names.h"
+#include "init/draft_names.h"
 #include "init/part.h"
 #include "init/robot_profile.h"
 

@@ -1,4 +1,4 @@
-#include "bag_doctor/incident.h"
+#include "bag_doctor/bag_incident.h"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "doctor/explanations.h"
+#include "doctor/finding_explanations.h"
 
 #include <algorithm>
 #include <cctype>

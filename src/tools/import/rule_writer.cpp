@@ -1,4 +1,4 @@
-#include "import/writer.h"
+#include "import/rule_writer.h"
 
 #include <algorithm>
 #include <cmath>

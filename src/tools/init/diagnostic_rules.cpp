@@ -1,4 +1,4 @@
-#include "init/limits.h"
+#include "init/diagnostic_rules.h"
 
 #include <algorithm>
 
