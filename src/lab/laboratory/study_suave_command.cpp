@@ -13,9 +13,9 @@
 #include "laboratory/study_output.h"
 #include "laboratory/study_runs.h"
 #include "study/csv.h"
-#include "suave_study/claims.h"
 #include "suave_study/fit.h"
 #include "suave_study/settings_json.h"
+#include "suave_study/suave_claims.h"
 #include "suave_study/suave_record.h"
 #include "suave_study/validation.h"
 

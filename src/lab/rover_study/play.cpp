@@ -10,7 +10,7 @@
 #include "manager/runtime.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
-#include "rover_study/rivals.h"
+#include "rover_study/rover_managers.h"
 #include "simulation/random.h"
 
 namespace culprit::study {

@@ -7,7 +7,7 @@
 #include "exemplars/rover/action.h"
 #include "exemplars/rover/costmap.h"
 #include "exemplars/rover/nodes.h"
-#include "exemplars/rover/pursuit.h"
+#include "exemplars/rover/pure_pursuit.h"
 #include "exemplars/rover/tf_buffer.h"
 #include "exemplars/rover/world.h"
 

@@ -4,7 +4,7 @@
 #include "exemplars/rover/bond_manager.h"
 #include "exemplars/rover/particle_filter.h"
 #include "exemplars/rover/path_search.h"
-#include "exemplars/rover/pursuit.h"
+#include "exemplars/rover/pure_pursuit.h"
 #include "exemplars/rover/world.h"
 
 namespace culprit::rover {

@@ -1,4 +1,4 @@
-#include "laboratory/live_run.h"
+#include "laboratory/sunset_live_run.h"
 
 #include <algorithm>
 #include <thread>

@@ -1,4 +1,4 @@
-#include "rover_study/rivals.h"
+#include "rover_study/rover_managers.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "exemplars/rover/pursuit.h"
+#include "exemplars/rover/pure_pursuit.h"
 
 #include <algorithm>
 

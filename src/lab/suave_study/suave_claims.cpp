@@ -1,4 +1,4 @@
-#include "suave_study/claims.h"
+#include "suave_study/suave_claims.h"
 
 #include <algorithm>
 #include <cmath>
