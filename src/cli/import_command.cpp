@@ -19,7 +19,7 @@ struct ImportOptions {
 };
 
 // Each note once, with the first line that it is about; the output has it at every place.
-void print_summary(const ImportOptions& options, const Imported& imported) {
+void print_summary(const ImportOptions& options, const foreign::Imported& imported) {
   fmt::print(stderr, "culprit: {}: {} imported, {} kept as comments, {}\n", options.file,
              amount_of(static_cast<std::size_t>(imported.rules), "rule"),
              imported.rules_as_comments, amount_of(imported.notes.size(), "note"));
@@ -36,7 +36,7 @@ void print_summary(const ImportOptions& options, const Imported& imported) {
 }
 
 int import_foreign_rules(const ImportOptions& options, const Source& source) {
-  const auto imported = import_rules(source);
+  const auto imported = foreign::import_rules(source);
   if (!imported) return fail(imported.error());
   if (const auto written = write_text(options.output, imported->text); !written)
     return fail(written.error());

@@ -9,24 +9,22 @@
 #include "import/strategy_dialect.h"
 #include "language/checker.h"
 
-namespace culprit {
+namespace culprit::foreign {
 namespace {
 
-using foreign::Block;
-
 // By the words that begin its lines. A file without any rule is as good in one as in the other.
-Expected<foreign::File> read(const Source& source) {
+Expected<File> read(const Source& source) {
   bool has_sections = false;
   for (std::uint32_t line = 1; line <= source.line_count(); ++line) {
-    const auto words = foreign::split_words(source, source.line(line));
+    const auto words = split_words(source, source.line(line));
     if (words.empty()) continue;
     const std::string& head = words.front().text;
     has_sections |= head == "BEGIN";
     if (!has_sections && head == "RULE") break;
-    if (head == "POLICIES" || head == "TRIGGER") return foreign::read_strategy_dialect(source);
-    if (head == "COMPONENTS" || head == "IF") return foreign::read_condition_dialect(source);
+    if (head == "POLICIES" || head == "TRIGGER") return read_strategy_dialect(source);
+    if (head == "COMPONENTS" || head == "IF") return read_condition_dialect(source);
   }
-  if (has_sections) return foreign::read_strategy_dialect(source);
+  if (has_sections) return read_strategy_dialect(source);
   return Error{source.name() +
                ":1:1: this is no rule file of the reference: it has no BEGIN RULES; if it is "
                "culprit's own, run culprit check"};
@@ -52,7 +50,7 @@ Text assemble(const std::vector<Block>& blocks) {
 }
 
 // Puts the lines of `block` into a comment, because of `why`.
-void retract(Block& block, const std::string& why, std::vector<foreign::Note>& notes) {
+void retract(Block& block, const std::string& why, std::vector<Note>& notes) {
   const std::string note =
       std::string(block.is_rule ? "this rule" : "this line") + " is kept as a comment: " + why;
   block.notes.push_back(note);
@@ -80,7 +78,7 @@ std::map<std::size_t, std::string> mistakes(const Text& text) {
   return found;
 }
 
-void retract_mistakes(std::vector<Block>& blocks, std::vector<foreign::Note>& notes) {
+void retract_mistakes(std::vector<Block>& blocks, std::vector<Note>& notes) {
   constexpr int kRounds = 10;
   for (int round = 0;; ++round) {
     const auto found = mistakes(assemble(blocks));
@@ -103,7 +101,7 @@ Expected<Imported> import_rules(const Source& source) {
     return Error{source.name() + ": this file is binary, not a rule file"};
   const auto file = read(source);
   if (!file) return Error{file.error()};
-  foreign::Written written = foreign::write(*file, source.name());
+  Written written = write(*file, source.name());
   retract_mistakes(written.blocks, written.notes);
 
   Imported imported;
@@ -113,8 +111,8 @@ Expected<Imported> import_rules(const Source& source) {
     if (block.is_rule) ++(is_retracted(block) ? imported.rules_as_comments : imported.rules);
   }
   std::stable_sort(imported.notes.begin(), imported.notes.end(),
-                   [](const foreign::Note& a, const foreign::Note& b) { return a.line < b.line; });
+                   [](const Note& a, const Note& b) { return a.line < b.line; });
   return imported;
 }
 
-}  // namespace culprit
+}  // namespace culprit::foreign

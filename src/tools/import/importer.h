@@ -13,14 +13,14 @@
 #include "import/rule_writer.h"
 #include "language/source.h"
 
-namespace culprit {
+namespace culprit::foreign {
 
 // The largest file that is imported, in bytes.
 inline constexpr std::size_t kMaxImport = 1u << 20;
 
 struct Imported {
   std::string text;  // passes check()
-  std::vector<foreign::Note> notes;
+  std::vector<Note> notes;
   std::size_t rules = 0;  // in the text
   std::size_t rules_as_comments = 0;
 };
@@ -28,4 +28,4 @@ struct Imported {
 // Errors: the file is in neither dialect, or is malformed; with line and column, and what to do.
 Expected<Imported> import_rules(const Source& source);
 
-}  // namespace culprit
+}  // namespace culprit::foreign

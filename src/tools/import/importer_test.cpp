@@ -10,7 +10,7 @@
 
 #include "language/checker.h"
 
-namespace culprit {
+namespace culprit::foreign {
 namespace {
 
 using testing::HasSubstr;
@@ -57,7 +57,7 @@ TEST(Importer, GivesWhatTheGoldenFilesSay) {
     const auto result = import_rules(source);
     ASSERT_TRUE(result) << result.error();
     std::string said = result->text + "----\n";
-    for (const foreign::Note& note : result->notes)
+    for (const Note& note : result->notes)
       said += std::to_string(note.line) + ": " + note.text + "\n";
     const auto expected = std::filesystem::path(entry.path()).replace_extension(".expected");
     if (std::getenv("CULPRIT_WRITE_GOLDEN") != nullptr)
@@ -243,4 +243,4 @@ RC_GTEST_PROP(Importer, WhatItGivesPassesACheck, ()) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::foreign
