@@ -33,11 +33,11 @@ struct PlanOptions {
   PlannerOptions planner;
 };
 
-void print(const PlanReport& report, const PlanOptions& options) {
+void print(const rule_test::PlanReport& report, const PlanOptions& options) {
   if (options.format == "json") {
-    fmt::print("{}\n", to_text(plan_as_json(report)));
+    fmt::print("{}\n", to_text(rule_test::plan_as_json(report)));
   } else {
-    fmt::print("{}", plan_as_text(report));
+    fmt::print("{}", rule_test::plan_as_text(report));
   }
 }
 
@@ -55,8 +55,8 @@ int plan_for_state(const RuleSet& rules, const PlanOptions& options) {
     return kFailed;
   }
   const rule_test::Watched watched = rule_test::watch(state, rules);
-  PlanReport report(*options.planner.planner(), watched.failures, *watched.knowledge,
-                    watched.held_back);
+  rule_test::PlanReport report(*options.planner.planner(), watched.failures, *watched.knowledge,
+                               watched.held_back);
   if (state.moment) report.now = watched.now;
   print(report, options);
   return kOk;
@@ -129,8 +129,8 @@ int plan_for_robot(const live::LoadedRules& loaded, const PlanOptions& options) 
     fmt::print(stderr, "culprit: nothing is planned\n");
     return kFailed;
   }
-  PlanReport report(*options.planner.planner(), manager.plannable(), manager.knowledge(),
-                    manager.held_back());
+  rule_test::PlanReport report(*options.planner.planner(), manager.plannable(), manager.knowledge(),
+                               manager.held_back());
   report.now = (*robot)->now();
   print(report, options);
   return kOk;

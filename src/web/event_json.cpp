@@ -12,9 +12,12 @@ namespace {
 
 Json to_json(const Candidate& candidate, const RuleSet& rules) {
   const Strategy& strategy = rules[candidate.strategy];
-  return {{"strategy", strategy.name},      {"impact", strategy.impact.count},
-          {"cost", candidate.cost},         {"value", candidate.value},
-          {"resolves", candidate.resolves}, {"excluded", exclusion_as_json(candidate, rules)}};
+  return {{"strategy", strategy.name},
+          {"impact", strategy.impact.count},
+          {"cost", candidate.cost},
+          {"value", candidate.value},
+          {"resolves", candidate.resolves},
+          {"excluded", rule_test::exclusion_as_json(candidate, rules)}};
 }
 
 // Fields of an event for people, beyond the journal's.

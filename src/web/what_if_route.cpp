@@ -24,7 +24,8 @@ Answer what_if(const Json& body, const PlannerFactory& planner, const RuleLoader
   const rule_test::State state = rule_test::read_state(state_source, *checked.rules, diagnostics);
   if (!diagnostics.empty()) return refuse(422, rendered(diagnostics, state_source));
   const rule_test::Watched watched = rule_test::watch(state, *checked.rules);
-  return {200, plan_as_json({*planner(), watched.failures, *watched.knowledge, watched.held_back})};
+  return {200, rule_test::plan_as_json(
+                   {*planner(), watched.failures, *watched.knowledge, watched.held_back})};
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "knowledge/describe.h"
 #include "manager/restrained_planner.h"
 
-namespace culprit {
+namespace culprit::rule_test {
 namespace {
 
 constexpr std::size_t kMostNearTriggers = 3;
@@ -266,4 +266,4 @@ Json plan_as_json(const PlanReport& report) {
   return json;
 }
 
-}  // namespace culprit
+}  // namespace culprit::rule_test

@@ -8,7 +8,7 @@
 #include "json/json.h"
 #include "plan/decision.h"
 
-namespace culprit {
+namespace culprit::rule_test {
 
 struct PlanReport {
   // Finds the decisions, and what would flip them. A strategy that the governor withholds is not
@@ -27,4 +27,4 @@ Json plan_as_json(const PlanReport& report);
 // Why a strategy was not chosen; null for the one that was.
 Json exclusion_as_json(const Candidate& candidate, const RuleSet& rules);
 
-}  // namespace culprit
+}  // namespace culprit::rule_test
