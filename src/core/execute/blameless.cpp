@@ -7,7 +7,7 @@
 
 #include "language/evaluate.h"
 
-namespace culprit {
+namespace culprit::execute {
 namespace {
 
 // What the input would be if its component worked as well as one can; nothing: the input tells of no outage.
@@ -66,4 +66,4 @@ bool is_blameless(ComponentId component, RuleId id, const Knowledge& knowledge) 
   return is_true_if(its) && !is_true_if(of_others);
 }
 
-}  // namespace culprit
+}  // namespace culprit::execute

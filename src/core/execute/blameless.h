@@ -11,8 +11,8 @@
 
 #include "knowledge/knowledge.h"
 
-namespace culprit {
+namespace culprit::execute {
 
 bool is_blameless(ComponentId component, RuleId rule, const Knowledge& knowledge);
 
-}  // namespace culprit
+}  // namespace culprit::execute

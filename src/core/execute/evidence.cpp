@@ -6,7 +6,7 @@
 #include "execute/goal.h"
 #include "execute/limits.h"
 
-namespace culprit {
+namespace culprit::execute {
 namespace {
 
 constexpr Duration kOverdue = std::chrono::milliseconds(450);  // it is asked every 400 ms
@@ -143,7 +143,7 @@ std::optional<AnswerToCome> driver_to_come(const Strategy& strategy, const Knowl
                           adaptation.type == AdaptationType::kRedeploy;
     if (!disturbs || state.alive != true || component.lifecycle == LifecycleDriver::kManaged)
       continue;
-    Time until = later(state.node_seen, execute::grace_of_driver(adaptation, knowledge));
+    Time until = later(state.node_seen, grace_of_driver(adaptation, knowledge));
     const bool is_up = state.lifecycle == Lifecycle::kActive;
     if (is_up) until = std::min(until, later(state.lifecycle_since, kSpeaks));
     if ((state.is_rising || is_up) && now < until)
@@ -174,4 +174,4 @@ std::optional<std::string> doubt_of_identity(const Strategy& strategy, const Kno
   return std::nullopt;
 }
 
-}  // namespace culprit
+}  // namespace culprit::execute

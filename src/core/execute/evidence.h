@@ -12,7 +12,7 @@
 
 #include "knowledge/knowledge.h"
 
-namespace culprit {
+namespace culprit::execute {
 
 // The reason why a component that the strategy restarts or redeploys is not broken; empty if there is none.
 //
@@ -51,4 +51,4 @@ std::optional<std::string> launch_of_the_unseen(const Strategy& strategy,
 // name, signals to a process.
 std::optional<std::string> doubt_of_identity(const Strategy& strategy, const Knowledge& knowledge);
 
-}  // namespace culprit
+}  // namespace culprit::execute

@@ -214,14 +214,14 @@ std::optional<std::string> Governor::objection_to_run(StrategyId id, Autonomy au
       return rules[component].name + " is being adapted";
   }
   if (const auto held = interlock()) return held->reason;
-  if (auto doubt = doubt_of_identity(strategy, knowledge_)) return doubt;
+  if (auto doubt = execute::doubt_of_identity(strategy, knowledge_)) return doubt;
   return objection_by_when(strategy);
 }
 
 // It goes beside what is under way, and an interlock does not hold it.
 std::optional<std::string> Governor::objection_to_last_resort(const Strategy& strategy) const {
-  const bool is_of_process = kind_of(strategy) == StrategyKind::kProcess;
-  if (auto doubt = is_of_process ? doubt_of_identity(strategy, knowledge_) : std::nullopt)
+  const bool is_of_process = execute::kind_of(strategy) == execute::StrategyKind::kProcess;
+  if (auto doubt = is_of_process ? execute::doubt_of_identity(strategy, knowledge_) : std::nullopt)
     return doubt;
   return objection_by_when(strategy);
 }
@@ -329,14 +329,14 @@ std::optional<Governor::Held> Governor::doubt_of_storm(RuleId failure) const {
 
 std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) const {
   if (auto held = restraint_by_person(id)) return held;
-  if (auto doubt = doubt_of_identity(knowledge_.rules[id], knowledge_))
+  if (auto doubt = execute::doubt_of_identity(knowledge_.rules[id], knowledge_))
     return Held{Restraint::kIdentity, std::move(*doubt), kNever};
-  if (auto reason = launch_of_the_unseen(knowledge_.rules[id], knowledge_))
+  if (auto reason = execute::launch_of_the_unseen(knowledge_.rules[id], knowledge_))
     return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
   if (auto held = doubt_of_storm(knowledge_.rules[id].rule)) return held;
   if (auto held = departure(knowledge_.rules[id], now)) return held;
   if (auto held = container_to_come(knowledge_.rules[id])) return held;
-  if (auto driver = driver_to_come(knowledge_.rules[id], knowledge_, now))
+  if (auto driver = execute::driver_to_come(knowledge_.rules[id], knowledge_, now))
     return Held{Restraint::kEvidence, std::move(driver->reason), driver->until};
   return longer(lack_of_evidence(knowledge_.rules[id], now), limits_.on(id, now));
 }
@@ -354,10 +354,10 @@ std::optional<Governor::Held> Governor::restraint_on_last_resort(StrategyId id, 
   if (is_paused_) return paused();
   if (auto held = restraint_by_person(id)) return held;
   const Strategy& strategy = knowledge_.rules[id];
-  if (kind_of(strategy) != StrategyKind::kProcess) return std::nullopt;
-  if (auto doubt = doubt_of_identity(strategy, knowledge_))
+  if (execute::kind_of(strategy) != execute::StrategyKind::kProcess) return std::nullopt;
+  if (auto doubt = execute::doubt_of_identity(strategy, knowledge_))
     return Held{Restraint::kIdentity, std::move(*doubt), kNever};
-  if (auto reason = launch_of_the_unseen(strategy, knowledge_))
+  if (auto reason = execute::launch_of_the_unseen(strategy, knowledge_))
     return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
   const auto may_launch = [](const Adaptation& a) { return launches(a) || a.group; };
   return std::ranges::any_of(strategy.adaptations, may_launch) ? departure(strategy, now)
@@ -419,9 +419,9 @@ bool Governor::stays_anything_down() const {
 
 std::optional<Governor::Held> Governor::lack_of_evidence(const Strategy& strategy, Time now) const {
   if (!options_.needs_evidence) return std::nullopt;
-  if (auto reason = contradiction(strategy, knowledge_, now))
+  if (auto reason = execute::contradiction(strategy, knowledge_, now))
     return Held{Restraint::kEvidence, std::move(*reason), kNever};
-  if (auto answer = answer_to_come(strategy, knowledge_, now))
+  if (auto answer = execute::answer_to_come(strategy, knowledge_, now))
     return Held{Restraint::kEvidence, std::move(answer->reason), answer->until};
   return std::nullopt;
 }

@@ -31,8 +31,8 @@ class Governor {
   struct Options {
     Approval approval = Approval::kNone;
     Duration quiet_at_start{};  // nothing is begun for so long
-    Limits::Options limits{};
-    StormWatch::Options storm{};
+    execute::Limits::Options limits{};
+    execute::StormWatch::Options storm{};
     bool needs_evidence = false;  // before a process is ended (evidence.h)
     // A launch that ends so soon after a crash that it may have ended because of that is started again.
     bool revives_in_doubt = false;
@@ -47,7 +47,7 @@ class Governor {
     std::string author;
     std::string reason;
   };
-  using Held = Limits::Limit;
+  using Held = execute::Limits::Limit;
 
   // What it writes; all else it only reads.
   struct Writes {
@@ -70,7 +70,7 @@ class Governor {
   void obey(const Order& order, Time now);
 
   bool is_paused() const { return is_paused_; }
-  const std::optional<StormWatch::Storm>& storm() const { return storm_.storm(); }
+  const std::optional<execute::StormWatch::Storm>& storm() const { return storm_.storm(); }
   const std::vector<ActiveSilence>& silences() const { return silences_; }
   // The strategy that the order begins at once: one that a person runs, or approves after a program
   // proposed it; empty: none.
@@ -144,8 +144,8 @@ class Governor {
   Writes write_;
   Options options_;
   Time start_;
-  Limits limits_;
-  StormWatch storm_;
+  execute::Limits limits_;
+  execute::StormWatch storm_;
   bool is_paused_ = false;
   std::vector<ActiveSilence> silences_;
   std::vector<Question> questions_;

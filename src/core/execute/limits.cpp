@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace culprit {
+namespace culprit::execute {
 namespace {
 
 StrategyKind kind_of(AdaptationType type) {
@@ -258,4 +258,4 @@ void Limits::note(const Event& event) {
   }
 }
 
-}  // namespace culprit
+}  // namespace culprit::execute

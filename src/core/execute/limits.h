@@ -14,7 +14,7 @@
 #include "knowledge/history.h"
 #include "knowledge/knowledge.h"
 
-namespace culprit {
+namespace culprit::execute {
 
 // By the most drastic of its adaptations.
 enum class StrategyKind : std::uint8_t {
@@ -89,4 +89,4 @@ class Limits {
   std::vector<PerComponent> components_;
 };
 
-}  // namespace culprit
+}  // namespace culprit::execute

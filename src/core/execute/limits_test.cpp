@@ -5,12 +5,12 @@
 
 #include "language/checker.h"
 
-namespace culprit {
+namespace culprit::execute {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time kStart{100s};
+constexpr Time kBegin{100s};
 
 struct Two {
   RuleSet rules =
@@ -48,14 +48,14 @@ TEST(Limits, LetALaunchSettleBeforeTheComponentOrWhatDependsOnItIsTouched) {
   options.quiet_after_launch = 1s;
   options.quiet_downstream = 1s;
   Limits limits(two.knowledge, options);
-  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart));
-  limits.note({kStart, AdaptationDone{two.strategy("up_again"), 0, ""}});
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kBegin));
+  limits.note({kBegin, AdaptationDone{two.strategy("up_again"), 0, ""}});
   for (const char* quiet : {"up_again", "down_again", "down_tuned"}) {
-    EXPECT_EQ(restraint(limits.on(two.strategy(quiet), kStart + 999ms)), Restraint::kQuietPeriod)
+    EXPECT_EQ(restraint(limits.on(two.strategy(quiet), kBegin + 999ms)), Restraint::kQuietPeriod)
         << quiet;
-    EXPECT_FALSE(limits.on(two.strategy(quiet), kStart + 1s)) << quiet;
+    EXPECT_FALSE(limits.on(two.strategy(quiet), kBegin + 1s)) << quiet;
   }
-  EXPECT_FALSE(limits.on(two.strategy("other_again"), kStart)) << "it has nothing to do with it";
+  EXPECT_FALSE(limits.on(two.strategy("other_again"), kBegin)) << "it has nothing to do with it";
 }
 
 TEST(Limits, LeaveWhatDependsOnALaunchAloneUntilItPublishesAgain) {
@@ -64,16 +64,16 @@ TEST(Limits, LeaveWhatDependsOnALaunchAloneUntilItPublishesAgain) {
   options.quiet_after_launch = 1s;
   options.quiet_downstream = 1s;
   Limits limits(two.knowledge, options);
-  limits.note({kStart, AdaptationDone{two.strategy("up_again"), 0, ""}});
+  limits.note({kBegin, AdaptationDone{two.strategy("up_again"), 0, ""}});
   ComponentState& up = two.knowledge.components[ComponentId(0)];
-  up.awaits_ends_until = kStart + 10s;
-  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 3s)), Restraint::kQuietPeriod);
-  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 3s)) << "it may be what is broken";
+  up.awaits_ends_until = kBegin + 10s;
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kBegin + 3s)), Restraint::kQuietPeriod);
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kBegin + 3s)) << "it may be what is broken";
   up.awaits_ends_until = kLongAgo;
-  up.ends_back = kStart + 4s;
-  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 4999ms)),
+  up.ends_back = kBegin + 4s;
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kBegin + 4999ms)),
             Restraint::kQuietPeriod);
-  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 5s));
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kBegin + 5s));
 }
 
 // Whether culprit or another program started it again: its consumers have to discover the new
@@ -84,17 +84,17 @@ TEST(Limits, LeaveWhatDependsOnWhatCameBackAloneUntilItIsFound) {
   options.quiet_after_launch = 1s;
   options.quiet_downstream = 3s;
   Limits limits(two.knowledge, options);
-  limits.note({kStart, ComponentFound{ComponentId(0), 7}});
-  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart))
+  limits.note({kBegin, ComponentFound{ComponentId(0), 7}});
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kBegin))
       << "it was only seen for the first time";
-  limits.note({kStart + 1s, ComponentLost{ComponentId(0), ""}});
-  limits.note({kStart + 2s, ComponentFound{ComponentId(0), 8}});
-  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 4999ms)),
+  limits.note({kBegin + 1s, ComponentLost{ComponentId(0), ""}});
+  limits.note({kBegin + 2s, ComponentFound{ComponentId(0), 8}});
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kBegin + 4999ms)),
             Restraint::kQuietPeriod);
-  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 2s));
-  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 5s));
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kBegin + 2s));
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kBegin + 5s));
   two.knowledge.components[ComponentId(1)].alive = false;
-  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 3s)) << "it is down of itself";
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kBegin + 3s)) << "it is down of itself";
 }
 
 TEST(Limits, AreQuietOnlyAfterALaunch) {
@@ -103,8 +103,8 @@ TEST(Limits, AreQuietOnlyAfterALaunch) {
   options.quiet_after_launch = 1s;
   options.quiet_downstream = 1s;
   Limits limits(two.knowledge, options);
-  limits.note({kStart, AdaptationDone{two.strategy("down_tuned"), 0, ""}});
-  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart));
+  limits.note({kBegin, AdaptationDone{two.strategy("down_tuned"), 0, ""}});
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kBegin));
 }
 
 TEST(Limits, RememberTheLaunchOfAnEarlierProcess) {
@@ -113,8 +113,8 @@ TEST(Limits, RememberTheLaunchOfAnEarlierProcess) {
   options.quiet_after_launch = 1s;
   options.quiet_downstream = 1s;
   Limits limits(two.knowledge, options);
-  limits.remember({{kStart, AdaptationDone{two.strategy("up_again"), 0, ""}}});
-  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 500ms)),
+  limits.remember({{kBegin, AdaptationDone{two.strategy("up_again"), 0, ""}}});
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kBegin + 500ms)),
             Restraint::kQuietPeriod);
 }
 
@@ -124,7 +124,7 @@ TEST(Limits, DoubleTheTimeBetweenRestarts) {
   options.backoff = {1s, 4s, 60s};
   Limits limits(two.knowledge, options);
   const StrategyId again = two.strategy("up_again");
-  Time now = kStart;
+  Time now = kBegin;
   for (const Duration wait : {1s, 2s, 4s, 4s}) {
     limits.began(again, now);
     EXPECT_EQ(restraint(limits.on(again, now + wait - 1ms)), Restraint::kBackoff);
@@ -141,12 +141,12 @@ TEST(Limits, ForgetTheRestartsOfWhatHasBeenWellSinceThen) {
   Limits limits(two.knowledge, options);
   const StrategyId again = two.strategy("up_again");
   const RuleId rule = two.knowledge.rules[again].rule;
-  limits.began(again, kStart);
-  limits.note({kStart, FailureResolved{rule, FailureResolved::How::kByStrategy, again, {}}});
-  two.knowledge.states.state(rule).failing_since = kStart + 59s;
-  EXPECT_EQ(restraint(limits.on(again, kStart + 61s)), Restraint::kBackoff);
-  two.knowledge.states.state(rule).failing_since = kStart + 60s;
-  EXPECT_FALSE(limits.on(again, kStart + 61s));
+  limits.began(again, kBegin);
+  limits.note({kBegin, FailureResolved{rule, FailureResolved::How::kByStrategy, again, {}}});
+  two.knowledge.states.state(rule).failing_since = kBegin + 59s;
+  EXPECT_EQ(restraint(limits.on(again, kBegin + 61s)), Restraint::kBackoff);
+  two.knowledge.states.state(rule).failing_since = kBegin + 60s;
+  EXPECT_FALSE(limits.on(again, kBegin + 61s));
 }
 
 TEST(Limits, BoundWhatIsBegunAtAComponentInItsPeriod) {
@@ -154,12 +154,12 @@ TEST(Limits, BoundWhatIsBegunAtAComponentInItsPeriod) {
   Limits::Options options;
   options.per_component = {2, 60s};
   Limits limits(two.knowledge, options);
-  limits.began(two.strategy("down_again"), kStart);
-  limits.began(two.strategy("down_tuned"), kStart + 10s);
-  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 59s)),
+  limits.began(two.strategy("down_again"), kBegin);
+  limits.began(two.strategy("down_tuned"), kBegin + 10s);
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kBegin + 59s)),
             Restraint::kComponentIntensity);
-  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 59s));
-  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 60s));
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kBegin + 59s));
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kBegin + 60s));
 }
 
 TEST(Limits, SayHowManyThereWere) {
@@ -167,8 +167,8 @@ TEST(Limits, SayHowManyThereWere) {
   Limits::Options options;
   options.restarts = {1, 1h};
   Limits limits(two.knowledge, options);
-  limits.began(two.strategy("down_again"), kStart);
-  EXPECT_EQ(limits.on(two.strategy("down_again"), kStart)->reason,
+  limits.began(two.strategy("down_again"), kBegin);
+  EXPECT_EQ(limits.on(two.strategy("down_again"), kBegin)->reason,
             "1 restart of down in 1h, and no more are allowed");
 }
 
@@ -178,16 +178,16 @@ TEST(Limits, BoundTheRestartsOfAComponentWhicheverRulesAsk) {
   options.restarts = {2, 1h};
   options.backoff = {1s, 4s, 10s};
   Limits limits(two.knowledge, options);
-  limits.began(two.strategy("down_again"), kStart);
-  limits.began(two.strategy("down_tuned"), kStart + 1min);
-  limits.began(two.strategy("both_again"), kStart + 10min);
-  const auto refused = limits.on(two.strategy("down_again"), kStart + 59min);
+  limits.began(two.strategy("down_again"), kBegin);
+  limits.began(two.strategy("down_tuned"), kBegin + 1min);
+  limits.began(two.strategy("both_again"), kBegin + 10min);
+  const auto refused = limits.on(two.strategy("down_again"), kBegin + 59min);
   ASSERT_EQ(restraint(refused), Restraint::kRestarts) << "proven health in between is no excuse";
   EXPECT_EQ(refused->reason, "2 restarts of down in 1h, and no more are allowed");
-  EXPECT_FALSE(limits.on(two.strategy("down_tuned"), kStart + 59min)) << "it restarts nothing";
-  EXPECT_FALSE(limits.on(two.strategy("down_off"), kStart + 59min)) << "a stop may be what is safe";
-  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 59min)) << "each has its own";
-  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 1h));
+  EXPECT_FALSE(limits.on(two.strategy("down_tuned"), kBegin + 59min)) << "it restarts nothing";
+  EXPECT_FALSE(limits.on(two.strategy("down_off"), kBegin + 59min)) << "a stop may be what is safe";
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kBegin + 59min)) << "each has its own";
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kBegin + 1h));
 }
 
 TEST(Limits, RememberTheRestartsOfEarlierProcesses) {
@@ -197,9 +197,9 @@ TEST(Limits, RememberTheRestartsOfEarlierProcesses) {
   Limits limits(two.knowledge, options);
   const StrategyId again = two.strategy("down_again");
   limits.remember(
-      {{kStart, StrategyChosen{again, {}, {}, false}}, {kStart + 10min, StrategyResumed{again}}});
-  EXPECT_EQ(restraint(limits.on(again, kStart + 20min)), Restraint::kRestarts);
+      {{kBegin, StrategyChosen{again, {}, {}, false}}, {kBegin + 10min, StrategyResumed{again}}});
+  EXPECT_EQ(restraint(limits.on(again, kBegin + 20min)), Restraint::kRestarts);
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::execute

@@ -10,7 +10,7 @@
 #include "diagnose/touched.h"
 #include "diagnose/trouble.h"
 
-namespace culprit {
+namespace culprit::execute {
 
 StormWatch::StormWatch(const Knowledge& knowledge, EventLog& events, Options options)
     : knowledge_(knowledge),
@@ -184,4 +184,4 @@ bool StormWatch::is_or_was_ill(ComponentId component, RuleId except) const {
   });
 }
 
-}  // namespace culprit
+}  // namespace culprit::execute

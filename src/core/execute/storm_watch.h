@@ -17,7 +17,7 @@
 
 #include "knowledge/knowledge.h"
 
-namespace culprit {
+namespace culprit::execute {
 
 class StormWatch {
  public:
@@ -83,4 +83,4 @@ class StormWatch {
   std::vector<RuleId> lately_;  // those rules
 };
 
-}  // namespace culprit
+}  // namespace culprit::execute

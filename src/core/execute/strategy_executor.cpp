@@ -8,10 +8,7 @@
 #include "knowledge/ambiguity.h"
 #include "knowledge/held.h"
 
-namespace culprit {
-
-using execute::Goal;
-using execute::Pursuit;
+namespace culprit::execute {
 
 namespace {
 
@@ -53,7 +50,7 @@ void StrategyExecutor::give_back(StrategyId strategy, ComponentId component, Tim
   const auto place = std::ranges::find(adaptations, component, &Adaptation::component);
   CULPRIT_ASSERT(place != adaptations.end());
   run.adaptation = static_cast<std::size_t>(place - adaptations.begin());
-  run.undo.push_back({component, execute::LifecycleGoal{Lifecycle::kActive, {}}});
+  run.undo.push_back({component, LifecycleGoal{Lifecycle::kActive, {}}});
 }
 
 StrategyExecutor::Run& StrategyExecutor::add_run(StrategyId strategy) {
@@ -75,7 +72,7 @@ void StrategyExecutor::resume(Interrupted interrupted, Time now, Time from) {
   for (const Interrupted::Request& request : interrupted.requests)
     last_command_ = std::max(last_command_, request.command.id.number);
   // It is over: its components are free.
-  if (interrupted.has_failed && execute::undo_of(interrupted, knowledge_).empty()) return;
+  if (interrupted.has_failed && undo_of(interrupted, knowledge_).empty()) return;
   write_.attempts.resume(interrupted.strategy, now);
   Run& run = add_run(interrupted.strategy);
   run.interrupted = std::move(interrupted);
@@ -88,14 +85,14 @@ bool StrategyExecutor::take_up(Run& run, Time now) {
   if (now < run.from) return false;
   const Interrupted interrupted = *std::exchange(run.interrupted, std::nullopt);
   write_.events.tell(now, StrategyResumed{run.strategy});
-  run.undo = execute::undo_of(interrupted, knowledge_);
+  run.undo = undo_of(interrupted, knowledge_);
   if (interrupted.has_failed) {
     run.adaptation = interrupted.adaptations_done;
     write_.attempts.undo(run.strategy);
     write_.signals.touch(run.rule);
     return true;
   }
-  execute::Resumption rest = execute::resumption_of(interrupted, knowledge_);
+  Resumption rest = resumption_of(interrupted, knowledge_);
   run.adaptation = rest.adaptation;
   run.goals = std::move(rest.goals);
   if (rest.obstacle.empty()) return true;
@@ -228,8 +225,8 @@ Purpose StrategyExecutor::purpose_of(const Run& run) const {
                                      ? taken_back(pursuit.component(), adaptations, run.adaptation)
                                      : run.adaptation;
   Purpose purpose{run.strategy, static_cast<std::uint32_t>(adaptation), run.is_undoing};
-  const bool is_process = std::holds_alternative<execute::GoneGoal>(pursuit.goal()) ||
-                          std::holds_alternative<execute::PresentGoal>(pursuit.goal());
+  const bool is_process = std::holds_alternative<GoneGoal>(pursuit.goal()) ||
+                          std::holds_alternative<PresentGoal>(pursuit.goal());
   if (is_process) {
     purpose.before = knowledge_.components[pursuit.component()].intended_lifecycle;
   } else if (pursuit.before()) {
@@ -266,11 +263,11 @@ bool StrategyExecutor::next_goal(Run& run, Time now) {
       if (adaptation.begins_step) run.started = kNever;
     }
     if (run.goal < run.goals.size()) {
-      execute::Goal& goal = run.goals[run.goal];
-      const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&goal);
+      Goal& goal = run.goals[run.goal];
+      const auto* lifecycle = std::get_if<LifecycleGoal>(&goal);
       if (lifecycle != nullptr && launches(adaptation))
-        goal = execute::bringing_up(adaptation, lifecycle->target, knowledge_);
-      if (auto* present = std::get_if<execute::PresentGoal>(&goal)) {
+        goal = bringing_up(adaptation, lifecycle->target, knowledge_);
+      if (auto* present = std::get_if<PresentGoal>(&goal)) {
         run.started = std::min(run.started, now);
         present->tries_until = later(run.started, knowledge_.rules[adaptation.component].ready);
       }
@@ -356,8 +353,8 @@ bool StrategyExecutor::has_taken(const Run& run, ComponentId component) const {
   const ComponentState& state = knowledge_.components[component];
   if (state.is_to_be_given_back()) return true;
   const bool is_changed = state.brought && state.brought->is_changed;
-  return !is_changed && std::ranges::any_of(run.undo, [&](const execute::Undo& undo) {
-    return undo.component == component && std::holds_alternative<execute::LifecycleGoal>(undo.goal);
+  return !is_changed && std::ranges::any_of(run.undo, [&](const Undo& undo) {
+    return undo.component == component && std::holds_alternative<LifecycleGoal>(undo.goal);
   });
 }
 
@@ -406,12 +403,11 @@ bool StrategyExecutor::start_again(Run& run, Time now) {
       continue;
     auto goals = execute::goals_of(adaptation, knowledge_);
     if (!goals) return false;
-    std::erase_if(*goals,
-                  [](const Goal& goal) { return std::holds_alternative<execute::GoneGoal>(goal); });
+    std::erase_if(*goals, [](const Goal& goal) { return std::holds_alternative<GoneGoal>(goal); });
     for (Goal& goal : *goals) {
-      if (auto* present = std::get_if<execute::PresentGoal>(&goal))
-        present->not_before = std::min(
-            until, later(now, execute::PresentGoal::kPause * (1 << std::min(run.starts, 10))));
+      if (auto* present = std::get_if<PresentGoal>(&goal))
+        present->not_before =
+            std::min(until, later(now, PresentGoal::kPause * (1 << std::min(run.starts, 10))));
     }
     ++run.starts;
     run.adaptation = i;
@@ -460,14 +456,14 @@ void StrategyExecutor::finish_goal(Run& run, Time now) {
   if (pursuit.is_reached()) {
     // Where it was brought last counts; a restart takes it through another state.
     const auto rest = run.goals.begin() + static_cast<std::ptrdiff_t>(run.goal) + 1;
-    const bool is_last = std::none_of(rest, run.goals.end(), [](const execute::Goal& goal) {
-      return std::holds_alternative<execute::LifecycleGoal>(goal);
+    const bool is_last = std::none_of(rest, run.goals.end(), [](const Goal& goal) {
+      return std::holds_alternative<LifecycleGoal>(goal);
     });
     if (is_last) notes_.reached_lifecycle(pursuit, now);
-    const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
+    const auto* lifecycle = std::get_if<LifecycleGoal>(&pursuit.goal());
     if (is_to_last && lifecycle != nullptr && lifecycle->target == Lifecycle::kInactive)
       owe_no_more(pursuit.component(), now);
-    if (const auto* parameter = std::get_if<execute::ParameterGoal>(&pursuit.goal()))
+    if (const auto* parameter = std::get_if<ParameterGoal>(&pursuit.goal()))
       forget_owed(pursuit.component(), parameter->name);
     // The manager of a group goes on being the driver of its members.
     if (launches(adaptation) || (!adaptation.group && notes_.is_first_rise(pursuit)))
@@ -489,7 +485,7 @@ void StrategyExecutor::finish_goal(Run& run, Time now) {
 bool StrategyExecutor::replace_hung_member(Run& run) const {
   if (!run.pursuit->found_hung()) return false;
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
-  run.goals = execute::replacing_hung_member(adaptation, knowledge_);
+  run.goals = replacing_hung_member(adaptation, knowledge_);
   run.goal = 0;
   return true;
 }
@@ -529,4 +525,4 @@ Time StrategyExecutor::next_deadline() const {
   return next;
 }
 
-}  // namespace culprit
+}  // namespace culprit::execute

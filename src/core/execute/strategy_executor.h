@@ -21,7 +21,7 @@
 #include "knowledge/attempts.h"
 #include "knowledge/knowledge.h"
 
-namespace culprit {
+namespace culprit::execute {
 
 class StrategyExecutor {
  public:
@@ -83,12 +83,12 @@ class StrategyExecutor {
     StrategyId strategy;
     bool is_undoing = false;
     std::size_t adaptation = 0;
-    std::vector<execute::Goal> goals;  // of the adaptation
+    std::vector<Goal> goals;  // of the adaptation
     std::size_t goal = 0;
-    std::optional<execute::Pursuit> pursuit;
+    std::optional<Pursuit> pursuit;
     CommandId pending;
     std::string remark;
-    std::vector<execute::Undo> undo;
+    std::vector<Undo> undo;
     Time started = kNever;  // the first process that it started
     int starts = 0;         // that its process ended after it had been there
     struct BroughtUp {
@@ -113,7 +113,7 @@ class StrategyExecutor {
   bool take_up(Run& run, Time now);
   Purpose purpose_of(const Run& run) const;
   bool next_goal(Run& run, Time now);
-  Expected<std::vector<execute::Goal>> goals_of(const Run& run, Time now);
+  Expected<std::vector<Goal>> goals_of(const Run& run, Time now);
   bool leaves_out(Run& run);
   bool goes_past(Run& run, const std::string& obstacle, const std::string& reason, Time now);
   bool has_nothing_to_do(const Run& run, Time now);
@@ -129,18 +129,18 @@ class StrategyExecutor {
     ComponentId component;
     const char* why = "";
   };
-  std::optional<Missing> missing_for(const Run& run, const execute::Undo& undo) const;
-  bool is_held_by_last_resort(const execute::Undo& undo) const;
-  bool is_changed_by_another(const execute::Undo& undo) const;
+  std::optional<Missing> missing_for(const Run& run, const Undo& undo) const;
+  bool is_held_by_last_resort(const Undo& undo) const;
+  bool is_changed_by_another(const Undo& undo) const;
   void tell_left_out(const Run& run, const std::string& why, Time now);
-  void owe(const execute::Undo& undo, Time now);
+  void owe(const Undo& undo, Time now);
   void owe_restart(const Run& run, Time now);
   void owe_no_more(ComponentId component, Time now);
   void finish_goal(Run& run, Time now);
   bool replace_hung_member(Run& run) const;
   void finish_undo(Run& run, Time now);
-  void undo_at_next_start(StrategyId strategy, const execute::Undo& undo, Time now);
-  void take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals);
+  void undo_at_next_start(StrategyId strategy, const Undo& undo, Time now);
+  void take_owed(const Adaptation& adaptation, std::vector<Goal>& goals);
   void forget_owed(ComponentId component, const std::string& parameter);
   void forget_what_others_started(Time now);
   bool is_of_present_process(const Question& question) const;
@@ -152,13 +152,13 @@ class StrategyExecutor {
 
   const Knowledge& knowledge_;
   Writes write_;
-  execute::ComponentNotes notes_;
+  ComponentNotes notes_;
   std::vector<Run> runs_;
   // Parameters to be undone in processes that had exited by then; kept until the process is there
   // again, whoever starts it.
   struct Owed {
     StrategyId strategy;  // whose change it was
-    execute::Undo undo;
+    Undo undo;
   };
   std::vector<Owed> owed_;
   std::vector<Question> questions_;  // that were not answered yet
@@ -166,4 +166,4 @@ class StrategyExecutor {
   std::uint64_t last_command_ = 0;
 };
 
-}  // namespace culprit
+}  // namespace culprit::execute

@@ -6,10 +6,7 @@
 #include "execute/strategy_executor.h"
 #include "knowledge/held.h"
 
-namespace culprit {
-
-using execute::Goal;
-using execute::Pursuit;
+namespace culprit::execute {
 
 // How the goal that was pursued last is taken back. A state that two steps change is brought
 // back to where it was before the first. A step that gives back takes nothing.
@@ -17,28 +14,28 @@ void StrategyExecutor::note_undo(Run& run) {
   const Pursuit& pursuit = *run.pursuit;
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   if (adaptation.type == AdaptationType::kStop) {
-    if (!pursuit.is_reached() || !execute::is_undone_by_start(adaptation, knowledge_.rules)) return;
+    if (!pursuit.is_reached() || !is_undone_by_start(adaptation, knowledge_.rules)) return;
     const Lifecycle before = knowledge_.components[adaptation.component].intended_lifecycle;
-    for (Goal& goal : execute::starting_again(adaptation, before, knowledge_))
+    for (Goal& goal : starting_again(adaptation, before, knowledge_))
       run.undo.push_back({adaptation.component, std::move(goal)});
   } else if (pursuit.before() && !gives_back(run.adaptation, knowledge_.rules[run.strategy])) {
-    auto goal = execute::undoing(pursuit.goal(), adaptation.type, *pursuit.before());
+    auto goal = undoing(pursuit.goal(), adaptation.type, *pursuit.before());
     if (!goal) return;
-    auto known = std::ranges::find_if(run.undo, [&](const execute::Undo& each) {
-      return each.component == pursuit.component() && execute::are_of_one_thing(each.goal, *goal);
+    auto known = std::ranges::find_if(run.undo, [&](const Undo& each) {
+      return each.component == pursuit.component() && are_of_one_thing(each.goal, *goal);
     });
     if (known == run.undo.end())
-      known = run.undo.insert(known, execute::Undo{pursuit.component(), std::move(*goal)});
-    if (auto* parameter = std::get_if<execute::ParameterGoal>(&known->goal))
+      known = run.undo.insert(known, Undo{pursuit.component(), std::move(*goal)});
+    if (auto* parameter = std::get_if<ParameterGoal>(&known->goal))
       parameter->left = pursuit.left();
   }
 }
 
 bool StrategyExecutor::next_undo(Run& run, Time now) {
   for (; !run.undo.empty(); run.undo.pop_back()) {
-    const execute::Undo& undo = run.undo.back();
+    const Undo& undo = run.undo.back();
     const ComponentState& state = knowledge_.components[undo.component];
-    const bool starts = std::holds_alternative<execute::PresentGoal>(undo.goal);
+    const bool starts = std::holds_alternative<PresentGoal>(undo.goal);
     if (is_held_by_last_resort(undo)) continue;
     if (starts && (state.alive == true || (state.pid != 0 && state.process != ProcessState::kGone)))
       continue;  // it is there
@@ -68,17 +65,17 @@ bool StrategyExecutor::next_undo(Run& run, Time now) {
 
 // Its next undo is left out.
 void StrategyExecutor::tell_left_out(const Run& run, const std::string& why, Time now) {
-  const execute::Undo& undo = run.undo.back();
-  write_.events.tell(now, Undone{run.strategy,
-                                 knowledge_.rules[undo.component].name + ": " +
-                                     execute::describe(undo.goal) + ": " + why,
-                                 false});
+  const Undo& undo = run.undo.back();
+  write_.events.tell(
+      now, Undone{run.strategy,
+                  knowledge_.rules[undo.component].name + ": " + describe(undo.goal) + ": " + why,
+                  false});
 }
 
 // A person, or another program, has brought it to another state since. Where that is the one to go back to, nothing
 // is to be done. A parameter is looked at when it is undone.
-bool StrategyExecutor::is_changed_by_another(const execute::Undo& undo) const {
-  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
+bool StrategyExecutor::is_changed_by_another(const Undo& undo) const {
+  const auto* lifecycle = std::get_if<LifecycleGoal>(&undo.goal);
   const ComponentState& state = knowledge_.components[undo.component];
   return lifecycle != nullptr && state.brought && state.brought->is_changed &&
          state.lifecycle != lifecycle->target;
@@ -94,12 +91,12 @@ void StrategyExecutor::owe_restart(const Run& run, Time now) {
   const bool fell_back = state == Lifecycle::kUnconfigured || state == Lifecycle::kFinalized;
   if (adaptation.type == AdaptationType::kRestart && !run.goals.empty() && has_changed &&
       !fell_back)
-    owe({adaptation.component, execute::LifecycleGoal{Lifecycle::kActive, {}}}, now);
+    owe({adaptation.component, LifecycleGoal{Lifecycle::kActive, {}}}, now);
 }
 
 // It stays deactivated: the next try gives it back, be it that of the next culprit.
-void StrategyExecutor::owe(const execute::Undo& undo, Time now) {
-  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
+void StrategyExecutor::owe(const Undo& undo, Time now) {
+  const auto* lifecycle = std::get_if<LifecycleGoal>(&undo.goal);
   if (lifecycle == nullptr || lifecycle->target != Lifecycle::kActive) return;
   write_.components.owe_activation(undo.component, now);
   write_.events.tell(
@@ -117,13 +114,13 @@ void StrategyExecutor::owe_no_more(ComponentId component, Time now) {
 
 // The component that keeps another one, which the strategy took down, from being brought up again: one
 // that was adapted after it, or that it depends on, and that is down or could not be brought up.
-std::optional<StrategyExecutor::Missing> StrategyExecutor::missing_for(
-    const Run& run, const execute::Undo& undo) const {
+std::optional<StrategyExecutor::Missing> StrategyExecutor::missing_for(const Run& run,
+                                                                       const Undo& undo) const {
   const Strategy& strategy = knowledge_.rules[run.strategy];
-  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
+  const auto* lifecycle = std::get_if<LifecycleGoal>(&undo.goal);
   const bool activates = lifecycle != nullptr && lifecycle->target == Lifecycle::kActive &&
                          knowledge_.components[undo.component].lifecycle != Lifecycle::kActive;
-  const bool starts = std::holds_alternative<execute::PresentGoal>(undo.goal);
+  const bool starts = std::holds_alternative<PresentGoal>(undo.goal);
   if (strategy.components.size() < 2 || (!activates && !starts)) return std::nullopt;
   const auto is_down = [&](ComponentId c) {
     return c != undo.component && knowledge_.components[c].alive == false;
@@ -147,19 +144,19 @@ std::optional<StrategyExecutor::Missing> StrategyExecutor::missing_for(
 }
 
 // A last resort has changed the same since, and that stays.
-bool StrategyExecutor::is_held_by_last_resort(const execute::Undo& undo) const {
+bool StrategyExecutor::is_held_by_last_resort(const Undo& undo) const {
   Adaptation change;
   change.component = undo.component;
-  if (const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal)) {
+  if (const auto* parameter = std::get_if<ParameterGoal>(&undo.goal)) {
     change.type = AdaptationType::kSetParameter;
     change.subject = parameter->name;
-  } else if (const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal)) {
+  } else if (const auto* lifecycle = std::get_if<LifecycleGoal>(&undo.goal)) {
     change.type = lifecycle->target == Lifecycle::kActive ? AdaptationType::kActivate
                                                           : AdaptationType::kDeactivate;
-  } else if (const auto* mode = std::get_if<execute::ModeGoal>(&undo.goal)) {
+  } else if (const auto* mode = std::get_if<ModeGoal>(&undo.goal)) {
     change.type = AdaptationType::kChangeMode;
     change.subject = mode->mode;
-  } else if (std::holds_alternative<execute::PresentGoal>(undo.goal)) {
+  } else if (std::holds_alternative<PresentGoal>(undo.goal)) {
     change.type = AdaptationType::kStart;
   } else {
     return false;
@@ -169,20 +166,19 @@ bool StrategyExecutor::is_held_by_last_resort(const execute::Undo& undo) const {
 
 // No process is there to be asked. The next process may start with the values of the last one: many
 // nodes keep their parameters.
-void StrategyExecutor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo,
-                                          Time now) {
-  if (const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal)) {
+void StrategyExecutor::undo_at_next_start(StrategyId strategy, const Undo& undo, Time now) {
+  if (const auto* lifecycle = std::get_if<LifecycleGoal>(&undo.goal)) {
     write_.components.intend_lifecycle(undo.component, lifecycle->target, now, write_.events);
-  } else if (const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal)) {
+  } else if (const auto* parameter = std::get_if<ParameterGoal>(&undo.goal)) {
     forget_owed(undo.component, parameter->name);
     owed_.push_back({strategy, undo});
     // The next process starts with a value of its own.
-    std::get<execute::ParameterGoal>(owed_.back().undo.goal).left.reset();
+    std::get<ParameterGoal>(owed_.back().undo.goal).left.reset();
   }
 }
 
 // Values to be undone in a process that `adaptation` starts become its last goals.
-void StrategyExecutor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals) {
+void StrategyExecutor::take_owed(const Adaptation& adaptation, std::vector<Goal>& goals) {
   if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
     return;
   std::erase_if(owed_, [&](Owed& owed) {
@@ -198,8 +194,7 @@ void StrategyExecutor::forget_what_others_started(Time now) {
   std::erase_if(owed_, [&](const Owed& owed) {
     const ComponentId component = owed.undo.component;
     if (knowledge_.components[component].process == ProcessState::kGone) return false;
-    const std::string what =
-        knowledge_.rules[component].name + ": " + execute::describe(owed.undo.goal);
+    const std::string what = knowledge_.rules[component].name + ": " + describe(owed.undo.goal);
     write_.events.tell(
         now, Undone{owed.strategy, what + ": something else had started it again", false});
     return true;
@@ -209,7 +204,7 @@ void StrategyExecutor::forget_what_others_started(Time now) {
 void StrategyExecutor::forget_owed(ComponentId component, const std::string& parameter) {
   std::erase_if(owed_, [&](const Owed& owed) {
     return owed.undo.component == component &&
-           std::get<execute::ParameterGoal>(owed.undo.goal).name == parameter;
+           std::get<ParameterGoal>(owed.undo.goal).name == parameter;
   });
 }
 
@@ -222,7 +217,7 @@ void StrategyExecutor::finish_undo(Run& run, Time now) {
     owe(run.undo.back(), now);
   }
   // A mode that is back by itself was set back, and that is remembered.
-  if (std::holds_alternative<execute::ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())
+  if (std::holds_alternative<ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())
     write_.rivals.forget(pursuit.component());
   // A value that came back by itself was not undone.
   if (!reached || pursuit.has_changed_anything()) {
@@ -235,4 +230,4 @@ void StrategyExecutor::finish_undo(Run& run, Time now) {
   run.pursuit.reset();
 }
 
-}  // namespace culprit
+}  // namespace culprit::execute

@@ -506,7 +506,7 @@ TEST(Evidence, AMessageThatIsALittleLateIsNoSilence) {
   const Time last = *robot.manager().knowledge().signals.rhythm(rgb_of(robot)).last;
   const auto& strategy = robot.rules().strategies[0];
   const auto objection = [&](Duration after) {
-    return contradiction(strategy, robot.manager().knowledge(), last + after);
+    return execute::contradiction(strategy, robot.manager().knowledge(), last + after);
   };
   EXPECT_TRUE(objection(2 * interval + 100ms));
   EXPECT_FALSE(objection(2 * interval + 101ms));

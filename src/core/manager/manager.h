@@ -130,7 +130,7 @@ class Manager : public ManagingSystem {
   Analyzer analyzer_;
   TroubleWatch troubles_;
   std::unique_ptr<const Planner> planner_;
-  StrategyExecutor executor_;
+  execute::StrategyExecutor executor_;
   Governor governor_;
   Incidents incidents_;
   Autonomy autonomy_;

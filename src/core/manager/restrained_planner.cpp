@@ -10,9 +10,9 @@ namespace {
 
 std::optional<std::string> objection(StrategyId id, const Knowledge& knowledge) {
   const Strategy& strategy = knowledge.rules[id];
-  if (auto doubt = doubt_of_identity(strategy, knowledge)) return doubt;
-  if (auto reason = launch_of_the_unseen(strategy, knowledge)) return reason;
-  return contradiction(strategy, knowledge, knowledge.now);
+  if (auto doubt = execute::doubt_of_identity(strategy, knowledge)) return doubt;
+  if (auto reason = execute::launch_of_the_unseen(strategy, knowledge)) return reason;
+  return execute::contradiction(strategy, knowledge, knowledge.now);
 }
 
 }  // namespace
