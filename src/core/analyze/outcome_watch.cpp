@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/invariant.h"
 #include "knowledge/ambiguity.h"
 
 namespace culprit {
@@ -76,6 +77,7 @@ void OutcomeWatch::advance(Time now) {
 }
 
 void OutcomeWatch::count(const PendingOutcome& outcome, Time now) {
+  CULPRIT_ASSERT(outcome.is_void || outcome.due <= now);  // it would teach before it is proven
   const RuleId rule = knowledge_.rules[outcome.strategy].rule;
   if (outcome.is_void || !knowledge_.states[rule].detection.trigger.known) {
     write_.events.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kNothing});

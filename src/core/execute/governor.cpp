@@ -248,6 +248,7 @@ void Governor::obey(const Order& order, Time now) {
                  questions_.erase(questions_.begin() + (&question - questions_.data()));
                },
                [&](const Propose& o) {
+                 CULPRIT_ASSERT(question_of(o.strategy) == nullptr);  // one approval for two
                  const Time since =
                      knowledge_.states[knowledge_.rules[o.strategy].rule].failing_since;
                  questions_.push_back({o.strategy, since, false, true});

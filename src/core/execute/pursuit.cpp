@@ -152,6 +152,7 @@ void Pursuit::restart(Time now) {
   answered_ = now;
   const bool heard_nothing = step_ == Step::kDecide && seen_ && did_not_come(*seen_);
   if (step_ == Step::kLooking || heard_nothing) step_ = Step::kLook;
+  CULPRIT_ASSERT(step_ != Step::kChanging || !sent_.empty());
   if (step_ == Step::kChanging) wake_ = std::max(wake_, later(now, timeout(sent_.back()) + 1s));
 }
 
@@ -230,6 +231,7 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   // The change was not sent, because no node was there to receive it.
   if (answer_ && answer_->outcome == Outcome::kUnreachable) {
     if (now >= std::min(loads_until_, deadline_)) return give_up(why(*answer_));
+    CULPRIT_ASSERT(!sent_.empty());  // it is the answer to a change
     sent_.pop_back();
     answer_.reset();
     return look_again(now);
@@ -457,6 +459,7 @@ std::optional<Pursuit::Request> Pursuit::change_unseen(const Knowledge& knowledg
 }
 
 std::optional<Pursuit::Request> Pursuit::change(Request request, Time now) {
+  CULPRIT_ASSERT(is_under_way());  // a goal that is over would change the robot
   changed_ = now;
   first_changed_ = std::min(first_changed_, now);
   deadline_ = later(now, patience(goal_));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/invariant.h"
+
 namespace culprit::execute {
 namespace {
 
@@ -29,6 +31,7 @@ const Interrupted::Request* last_of(const Sent& sent) {
 // The process of a component is, or was about to be, replaced.
 std::vector<Goal> goals_of_process(const Sent& sent, const Adaptation& adaptation,
                                    const Knowledge& knowledge) {
+  CULPRIT_ASSERT(!sent.empty());  // a process that nothing was asked of would be replaced
   const auto* stop = last_of<StopProcess>(sent);
   const bool is_started = last_of<StartProcess>(sent) != nullptr;
   const int old_pid = stop != nullptr ? std::get<StopProcess>(stop->command.what).pid : 0;

@@ -202,6 +202,8 @@ void StrategyExecutor::advance(Run& run, Time now, std::vector<Command>& command
     if (run.pending == CommandId{} || run.pursuit->next_deadline() <= now ||
         run.pursuit->is_lost(knowledge_) || run.pursuit->must_insist(knowledge_)) {
       if (auto request = run.pursuit->advance(knowledge_, now)) {
+        // A strategy that has failed would go on changing the robot.
+        CULPRIT_ASSERT(run.is_undoing || attempt_of(run)->obstacle.empty());
         run.pending = {++last_command_};
         if (std::holds_alternative<StopProcess>(*request))
           write_.components[run.pursuit->component()].culprit_raised = kLongAgo;
@@ -446,6 +448,7 @@ void StrategyExecutor::fail_with_lost_process(const Run& run) {
 }
 
 void StrategyExecutor::finish_goal(Run& run, Time now) {
+  CULPRIT_ASSERT(run.goal < run.goals.size());  // its proof would be taken for another goal's
   const Pursuit& pursuit = *run.pursuit;
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   // A last resort is to last, even after its failure has cleared.

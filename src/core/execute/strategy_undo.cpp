@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/invariant.h"
 #include "execute/strategy_executor.h"
 #include "knowledge/held.h"
 
@@ -210,6 +211,8 @@ void StrategyExecutor::forget_owed(ComponentId component, const std::string& par
 
 void StrategyExecutor::finish_undo(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
+  // Another change would count as undone.
+  CULPRIT_ASSERT(!run.undo.empty() && run.undo.back().component == pursuit.component());
   const bool reached = pursuit.is_reached();
   if (reached) {
     notes_.reached_lifecycle(pursuit, now);

@@ -33,11 +33,17 @@ void Attempts::resume(StrategyId strategy, Time now) {
   attempt.has_no_failure = false;
 }
 
-void Attempts::change_begins(StrategyId strategy, Time now) { of(strategy).first_change = now; }
+void Attempts::change_begins(StrategyId strategy, Time now) {
+  Attempt& attempt = of(strategy);
+  CULPRIT_ASSERT(attempt.first_change == kNever);  // its first change would not count as its doing
+  attempt.first_change = now;
+}
 
 void Attempts::took_effect(StrategyId strategy, Time now) {
-  of(strategy).effective = now;
-  of(strategy).stage = Attempt::Stage::kWaiting;
+  Attempt& attempt = of(strategy);
+  CULPRIT_ASSERT(attempt.stage == Attempt::Stage::kAdapting);  // an undone change would be judged
+  attempt.effective = now;
+  attempt.stage = Attempt::Stage::kWaiting;
 }
 
 void Attempts::adapts_again(StrategyId strategy) {

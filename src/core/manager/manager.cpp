@@ -126,6 +126,7 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
 void Manager::check(std::span<const Command> commands) const {
   CULPRIT_ASSERT(hears_ || commands.empty());
   for (const Command& command : commands) {
+    CULPRIT_ASSERT(command.id != CommandId{});  // its answer would be no command's
     CULPRIT_ASSERT(command.component.index < knowledge_.rules.components.size());
     CULPRIT_ASSERT(is_read(command) || !governor_.is_paused());
     CULPRIT_ASSERT(command.timeout > Duration::zero());
@@ -420,6 +421,7 @@ void Manager::carry_out(const Decision& decision, Time now) {
 }
 
 void Manager::begin(StrategyId strategy, Time now, std::vector<std::string> obstacles) {
+  CULPRIT_ASSERT(autonomy_ == Autonomy::kAct);  // a dry run would change the robot
   for (const Adaptation& adaptation : knowledge_.rules[strategy].adaptations)
     monitor_.refresh(adaptation.value, now);
   executor_.begin(strategy, now, std::move(obstacles));
