@@ -344,6 +344,7 @@ void Recorder::run() {
     written_at = std::chrono::steady_clock::now();
 
     lock.lock();
+    CULPRIT_ASSERT(written_ <= upto);  // steps would count as written that are not
     written_ = upto;
     writing_since_.reset();
     done_.notify_all();
