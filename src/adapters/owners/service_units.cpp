@@ -301,6 +301,7 @@ bool Units::advance(Errand& errand) {
 // ---- starting
 
 bool Units::begin_start(Errand& errand, const UnitState& state) {
+  CULPRIT_ASSERT(errand.kind == Errand::Kind::kStart && !errand.was_asked);
   const std::string& name = name_of(errand.component);
   // systemd has not noticed yet.
   if (is_here() && state.main_pid != 0 && has_ended(state.main_pid) && live_now() < errand.until)
@@ -319,6 +320,7 @@ bool Units::begin_start(Errand& errand, const UnitState& state) {
 }
 
 bool Units::watch_start(Errand& errand, const UnitState& state) {
+  CULPRIT_ASSERT(errand.kind == Errand::Kind::kStart && errand.was_asked);
   const std::string& name = name_of(errand.component);
   if (state.main_pid != 0) return answer(errand, Outcome::kDone, "", state.main_pid);
   if (!state.has_job && state.is_over())
@@ -354,7 +356,7 @@ std::optional<std::string> Units::hold_of(const Errand& errand, const UnitState&
 }
 
 bool Units::begin_end(Errand& errand, const UnitState& state) {
-  CULPRIT_ASSERT(errand.kind != Errand::Kind::kStart);
+  CULPRIT_ASSERT(errand.kind != Errand::Kind::kStart && !errand.was_asked);  // ended twice
   const std::string& name = name_of(errand.component);
   ServiceOwner& bus = owner_of(errand.component);
   if (!is_here() && errand.pid != 0)
@@ -410,6 +412,8 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
 }
 
 bool Units::watch_end(Errand& errand, const UnitState& state) {
+  // A unit that was to start would be killed.
+  CULPRIT_ASSERT(errand.kind != Errand::Kind::kStart && errand.was_asked);
   const std::string& name = name_of(errand.component);
   const bool is_left_by_systemd = errand.kind == Errand::Kind::kEnd
                                       ? state.is_over() && !state.has_job

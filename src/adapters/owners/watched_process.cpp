@@ -38,6 +38,7 @@ ProcessState WatchedProcess::state() const {
 }
 
 void WatchedProcess::signal(int number) const {
+  CULPRIT_ASSERT(!is_reaped_);  // as kill_group()
   if (relation_ == Relation::kAdopted) {
     syscall(SYS_pidfd_send_signal, pidfd_.get(), number, nullptr, 0);
   } else {
