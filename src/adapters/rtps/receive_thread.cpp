@@ -343,6 +343,7 @@ void ReceiveThread::run() {
     {
       const MutexLock lock(mutex_);
       ++rounds_;
+      CULPRIT_ASSERT(rounds_ % 2 == 0);  // close() would take a socket that is in use
       calm(Clock::now());
     }
     round_ended_.notify_all();

@@ -58,6 +58,7 @@ const char* WriterRecords::reserve(const Guid& guid, Reading how, const Fragment
   for (std::size_t i = before; i < before + fragments.count; ++i) {
     if (assembly.seen[i]) continue;
     assembly.seen[i] = true;
+    CULPRIT_ASSERT(assembly.missing > 0);  // its memory would never be given back
     --assembly.missing;
   }
   if (assembly.missing == 0) release(writer, found);
