@@ -118,11 +118,24 @@ Error unknown_key(const ConfigurationFile& file, const std::string& key,
       (near.empty() ? "culprit run --print-config lists all" : "did you mean '" + near + "'?")};
 }
 
-// Whether the list that begins at `open` has no end before the next line with a '='.
+// Whether the list that begins at `open` has no end before the next setting.
 bool is_open_list(const std::string& text, std::size_t open) {
-  const auto close = text.find(']', open);
-  const auto next = text.find('=', open);
-  return close == std::string::npos || next < close;
+  char quote = 0;  // of the text that is open
+  for (std::size_t at = open; at < text.size(); ++at) {
+    const char c = text[at];
+    if (quote == '"' && c == '\\') {
+      ++at;
+    } else if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      at = std::min(text.find('\n', at), text.size());
+    } else if (c == ']' || c == '=') {
+      return c == '=';
+    }
+  }
+  return true;
 }
 
 // The first line whose text or list has no end; 0: none.

@@ -115,6 +115,7 @@ TEST_F(RunConfigurationFile, SaysHowALineIsWritten) {
   EXPECT_EQ(error_of("record-topics = [\"/scan\", \"/odom\"\nweb = true\n"),
             file_ + ":1: this value has no end; write the closing quote, or the ] of its list");
   EXPECT_EQ(error_of("record-topics = [\"/scan\",\n  \"/odom\"]\nweb = true\n"), "no error");
+  EXPECT_EQ(error_of("allow-host = [\"a=b]\", # c = d\n  'e']\nweb = true\n"), "no error");
   EXPECT_EQ(error_of("CULPRIT_SETTLE = \"8s\"\n"),
             file_ + ":1: culprit run has no option 'CULPRIT_SETTLE'; did you mean 'settle'?");
   EXPECT_EQ(error_of("RULES = \"a.rules\"\n"),
