@@ -257,7 +257,7 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
     const bool restores = parameter != nullptr && parameter->kind == ParameterGoal::Kind::kRestore;
     return restores ? reach("nothing to restore: " + why(*seen_)) : give_up(why(*seen_));
   }
-  if (!before_) before_ = seen_;
+  if (!before_ && !has_changed_anything()) before_ = seen_;
   if (!has_changed_anything() && would_fight(knowledge)) {
     met_rival_ = true;
     return give_up("another program sets it back; culprit leaves it alone");
