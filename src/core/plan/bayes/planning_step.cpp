@@ -377,7 +377,7 @@ void PlanningStep::leave_to(RuleId other, std::size_t failure,
 }
 
 // The strategy of another failure, under way or of those chosen with it, that does what another
-// strategy of this failure would do: it may clear both.
+// strategy of this failure would do: it may clear both. A less critical one is not waited for: it may take long.
 std::optional<StrategyId> PlanningStep::done_for_another(
     const WeighedCandidate& weighed, const std::vector<WeighedCandidate*>& chosen) const {
   const auto would_do = [&](StrategyId other) {
@@ -393,7 +393,8 @@ std::optional<StrategyId> PlanningStep::done_for_another(
   }
   for (const RuleId id : knowledge_.states.active()) {
     const auto& attempt = knowledge_.states[id].attempt;
-    if (attempt && would_do(attempt->strategy)) return attempt->strategy;
+    if (attempt && levels_.of(id) >= weighed.level && would_do(attempt->strategy))
+      return attempt->strategy;
   }
   return std::nullopt;
 }
