@@ -32,6 +32,12 @@ std::string boot_id() {
 
 bool ends_at_once(const Fault& fault) { return fault.kind == FaultKind::kRestart; }
 
+// It takes no time. Other faults wait for a node, or for the firewall.
+bool is_signal(const Fault& fault) {
+  return fault.kind == FaultKind::kKill || fault.kind == FaultKind::kHang ||
+         fault.kind == FaultKind::kSlow;
+}
+
 // A deactivated node that no rule is about is not well either.
 std::vector<std::string> complaints_of(const RobotView& view, const RobotView& before,
                                        const std::vector<Fault>& faults) {
@@ -268,12 +274,15 @@ bool DrillSession::undo_all(std::vector<Injected>& injected) {
   return is_undone;
 }
 
-void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected) {
+// `announced`: just before the first fault.
+void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected, Time announced) {
   const RobotView before = *healthy_;
   const bool has_lasting =
       std::ranges::any_of(trial.faults, [](const Fault& each) { return drill::lasts(each.kind); });
   // The clock on the wall may be set meanwhile: it dates what is written, and measures nothing.
   const Time begin = live_now();
+  if (std::ranges::all_of(trial.faults, is_signal) && begin - announced >= kStarved)
+    stood_still_ = begin;
   std::optional<std::pair<Time, double>> calm;
   bool is_over = std::ranges::all_of(trial.faults, ends_at_once);
   const auto undo_now = [&] {
@@ -306,7 +315,7 @@ void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected)
       break;
     }
   }
-  if (stood_still_ > begin) trial.trouble = "the drill itself stood still meanwhile";
+  if (stood_still_ >= begin) trial.trouble = "the drill itself stood still meanwhile";
 }
 
 void DrillSession::inject(const std::vector<Injected>& injected, Trial& trial) {
@@ -338,8 +347,9 @@ Expected<Trial> DrillSession::run(const drill::Step& step) {
     (void)note({});
     return Error{may.error()};
   }
+  const Time announced = live_now();
   inject(*injected, trial);
-  if (trial.trouble.empty()) watch_reaction(trial, *injected);
+  if (trial.trouble.empty()) watch_reaction(trial, *injected, announced);
   if (undo_all(*injected)) {
     calm_.reset();
     // The remedy may be a fault by itself now (an enhancement of a good picture), and has to be undone, too.

@@ -84,7 +84,7 @@ class DrillSession {
   void next_look();
   Expected<std::vector<drill::Injected>> prepare(const std::vector<drill::Fault>& faults);
   void inject(const std::vector<drill::Injected>& injected, drill::Trial& trial);
-  void watch_reaction(drill::Trial& trial, std::vector<drill::Injected>& injected);
+  void watch_reaction(drill::Trial& trial, std::vector<drill::Injected>& injected, Time announced);
   bool undo(std::vector<drill::Injected>& injected);
   // Until each is undone, `patience` at most: a node that was just started again may not answer at once.
   bool undo_all(std::vector<drill::Injected>& injected);
