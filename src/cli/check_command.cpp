@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <string_view>
 #include <system_error>
 #include <unistd.h>
 
@@ -94,15 +96,17 @@ void check_launches(const Expansion& file, Checked& checked) {
       rules.components, [](const Component& each) { return !each.launch.empty(); });
   const bool is_elsewhere = std::ssize(troubles) == launches;
   // A word that only a shell understands was reported.
-  const auto is_reported = [&](const LiveInventory::LaunchTrouble& trouble) {
-    return std::ranges::any_of(checked.file.components, [&](const syntax::Component& each) {
-      return each.name.text == trouble.component && each.launch &&
-             std::ranges::any_of(checked.diagnostics, [&](const Diagnostic& d) {
-               return d.code == Code::kNoShell && d.span == each.launch->span;
-             });
-    });
-  };
-  std::erase_if(troubles, is_reported);
+  std::set<std::uint32_t> places;
+  for (const Diagnostic& d : checked.diagnostics) {
+    if (d.code == Code::kNoShell) places.insert(d.span.begin);
+  }
+  std::set<std::string_view> reported;  // components
+  for (const syntax::Component& each : checked.file.components) {
+    if (each.launch && places.contains(each.launch->span.begin)) reported.insert(each.name.text);
+  }
+  std::erase_if(troubles, [&](const LiveInventory::LaunchTrouble& trouble) {
+    return reported.contains(trouble.component);
+  });
   if (troubles.empty()) return;
   if (is_elsewhere) {
     fmt::print(stderr,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 
 #include "base/sort_unique.h"
 #include "language/compiler.h"
@@ -67,6 +68,10 @@ class Checker {
     symbols_.drop_forgotten_reports();
     for (Input& input : rules_.inputs) sort_unique(input.thresholds);
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
+    for (std::size_t g = 0; g < rules_.groups.size(); ++g) {
+      for (const ComponentId member : rules_.groups[g].members)
+        groups_of_members_[member].emplace_back(g);
+    }
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) link_readers(RuleId(r));
     check_circles(file_, rules_, diagnostics_);
     check_meaning();
@@ -107,10 +112,10 @@ class Checker {
   void containers() {
     for (std::size_t part = 0; part < rules_.components.size(); ++part) {
       const auto& composed = rules_.components[part].composed;
-      for (std::size_t c = 0; composed && c < rules_.components.size(); ++c) {
-        if (c != part && rules_.components[c].node == composed->container)
-          rules_.dependencies.push_back({ComponentId(part), ComponentId(c)});
-      }
+      if (!composed) continue;
+      const auto container = symbols_.known_component(composed->container);
+      if (container && container->index != part && rules_[*container].node == composed->container)
+        rules_.dependencies.push_back({ComponentId(part), *container});
     }
   }
 
@@ -192,6 +197,7 @@ class Checker {
 
   void add_rule(const syntax::Rule& written) {
     const RuleId id(rules_.rules.size());
+    const std::size_t said = diagnostics_.size();
     Rule rule;
     rule.name = written.name.text;
     rule.declaration = written.name;
@@ -230,7 +236,7 @@ class Checker {
     sort_unique(rules_.rules[id.index].components);
     // How a component of a broken line is started is not known.
     if (!written.has_broken_part && !has_broken_declaration_) {
-      check_launches(written, rules_, id, diagnostics_);
+      check_launches(written, symbols_, rules_, id, said, diagnostics_);
       check_required(written, rules_, id, diagnostics_);
     }
   }
@@ -344,30 +350,29 @@ class Checker {
   void link_groups(RuleId id) {
     Rule& rule = rules_.rules[id.index];
     rule.groups.clear();
-    for (std::size_t g = 0; g < rules_.groups.size(); ++g) {
-      const Group& group = rules_.groups[g];
-      const auto is_member = [&](ComponentId component) {
-        return std::ranges::find(group.members, component) != group.members.end();
-      };
-      const auto is_of_group = [&](InputId input_id) {
-        const Input& input = rules_[input_id];
-        const bool is_of_component =
-            input.kind == Input::Kind::kAlive || input.kind == Input::Kind::kLifecycle;
-        const auto* source = input.kind == Input::Kind::kSignal
-                                 ? std::get_if<GroupId>(&rules_[input.signal].source)
-                                 : nullptr;
-        return (is_of_component && is_member(input.component)) ||
-               (source != nullptr && *source == GroupId(g));
-      };
-      if (std::ranges::none_of(rule.components, is_member) &&
-          std::ranges::none_of(rule.inputs, is_of_group))
-        continue;
-      rule.groups.emplace_back(g);
+    const auto add_those_of = [&](ComponentId member) {
+      const auto found = groups_of_members_.find(member);
+      if (found == groups_of_members_.end()) return;
+      rule.groups.insert(rule.groups.end(), found->second.begin(), found->second.end());
+    };
+    for (const ComponentId component : rule.components) add_those_of(component);
+    for (const InputId input_id : rule.inputs) {
+      const Input& input = rules_[input_id];
+      if (input.kind == Input::Kind::kAlive || input.kind == Input::Kind::kLifecycle)
+        add_those_of(input.component);
+      const auto* source = input.kind == Input::Kind::kSignal
+                               ? std::get_if<GroupId>(&rules_[input.signal].source)
+                               : nullptr;
+      if (source != nullptr) rule.groups.push_back(*source);
+    }
+    sort_unique(rule.groups);
+    for (const GroupId group : rule.groups) {
       Input health;
       health.type = Type::kString;
-      health.signal = group.health;
+      health.signal = rules_[group].health;
       auto& readers = rules_.inputs[symbols_.input(health).index].readers;
-      if (std::ranges::find(readers, id) == readers.end()) readers.push_back(id);
+      // Rules are linked in their order, so this one is the last reader if it is one.
+      if (readers.empty() || readers.back() != id) readers.push_back(id);
     }
   }
 
@@ -382,6 +387,7 @@ class Checker {
   StrategyEntries strategies_;
   bool has_broken_declaration_ = false;
   PlaceIndex rule_names_;
+  std::unordered_map<ComponentId, std::vector<GroupId>> groups_of_members_;
   std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
   std::vector<FileCondition> file_conditions_;
 };

@@ -1,5 +1,6 @@
 #include "language/checker.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -357,6 +358,67 @@ TEST(Checker, SurvivesHostileNesting) {
   std::string choices = "x";  // of a type that nothing tells
   for (int i = 0; i < 40; ++i) choices = "a ? (" + choices + ") : y";
   EXPECT_FALSE(codes_of("RULE R\nPOLICIES ERROR\nTRIGGER (" + choices + ") == z\n").empty());
+}
+
+// ---- files of thousands of components: comparisons that take the square of their number have an end
+
+std::size_t count_of(Code code, const std::vector<Diagnostic>& all) {
+  return static_cast<std::size_t>(std::ranges::count(all, code, &Diagnostic::code));
+}
+
+TEST(LargeFile, GetsSuggestionsForItsFirstUnknownContainersOnly) {
+  constexpr std::size_t kEach = 1000;
+  std::string text;
+  for (std::size_t i = 0; i < kEach; ++i) {
+    const std::string n = std::to_string(i);
+    text += "COMPONENT box" + n + " NODE /node_" + n + "\nCOMPONENT c" + n + " NODE /c" + n +
+            " IN /nodd_" + n + " PLUGIN a::B\n";
+  }
+  const Checked checked = check(Source("test.rules", text));
+  EXPECT_EQ(count_of(Code::kNoContainer, checked.diagnostics), kEach);
+  EXPECT_EQ(std::ranges::count_if(checked.diagnostics,
+                                  [](const Diagnostic& d) {
+                                    return d.code == Code::kNoContainer && d.fix.has_value();
+                                  }),
+            Symbols::kMaxComparisons / kEach);
+}
+
+TEST(LargeFile, IsSearchedForEffectsWithinABudget) {
+  constexpr std::size_t kEach = 3000;
+  const std::string last = "c" + std::to_string(kEach - 1);
+  std::string text;
+  std::string rules;
+  for (std::size_t i = 0; i < kEach; ++i) {
+    const std::string name = "c" + std::to_string(i);
+    text += "COMPONENT " + name + " NODE /" + name + "\n";
+    if (i > 0) text += "DEPENDENCY " + name + " ON c" + std::to_string(i - 1) + "\n";
+    rules += "RULE R" + name + "\n  POLICIES ERROR\n  TRIGGER !alive(" + name +
+             ")\n    STRATEGY s 80 10\n      ADAPTATION " + last + " restart 5\n";
+  }
+  const Checked checked = check(Source("test.rules", text + rules));
+  ASSERT_TRUE(checked.rules);
+  const std::size_t found = count_of(Code::kAdaptsEffect, checked.diagnostics);
+  EXPECT_GT(found, 500u);
+  EXPECT_LT(found, 1500u) << "each search passes up to 3000 dependencies";
+}
+
+TEST(Effects, ATopicBelongsToTheLongestNodeNameAboveIt) {
+  const auto codes = [](const std::string& topic) {
+    return codes_of(R"(COMPONENT arm NODE /arm
+COMPONENT hand NODE /arm/hand
+COMPONENT user NODE /user
+DEPENDENCY user ON hand
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age()" + topic +
+                    R"() > 1s && alive(arm)
+    STRATEGY again 80 10
+      ADAPTATION user restart 5
+)");
+  };
+  EXPECT_EQ(codes("/arm/hand/a/b"), std::vector<std::string>{"R048"});
+  EXPECT_EQ(codes("/arm/handle"), (std::vector<std::string>{}));
+  EXPECT_EQ(codes("/other/hand"), (std::vector<std::string>{}));
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ void condense_comments(const Source& source, std::vector<Diagnostic>& diagnostic
     if (!is_about(diagnostics[i], source, Code::kUnknownStatement, "/*")) continue;
     const std::uint32_t begin = diagnostics[i].span.begin;
     const auto close = text.find("*/", begin + 2);
-    if (close == std::string_view::npos) continue;
+    if (close == std::string_view::npos) return;
     const auto end = static_cast<std::uint32_t>(close) + 2;
     diagnostics[i].fix = as_comment(text, {begin, end});
     std::erase_if(diagnostics,

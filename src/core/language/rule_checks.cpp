@@ -8,8 +8,11 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 
 #include "language/evaluate.h"
+#include "language/symbols.h"
 
 namespace culprit {
 namespace {
@@ -29,12 +32,11 @@ bool lacks_launch(const culprit::Adaptation& adaptation, const RuleSet& rules) {
 }
 
 // Empty: a COMPONENT line declares it, and may get a LAUNCH.
-std::string remedy_of_undeclared(const Component& component, const RuleSet& rules) {
+std::string remedy_of_undeclared(const Component& component, const Symbols& symbols) {
   if (component.declared) return "";
   const std::string& name = component.name;
-  const bool is_topic =
-      std::ranges::any_of(rules.topics, [&](const Topic& topic) { return topic.name == name; });
-  if (is_topic) return "this is a topic of these rules: write the component that publishes it";
+  if (symbols.is_topic(name))
+    return "this is a topic of these rules: write the component that publishes it";
   const bool is_node = name.starts_with('/');
   return "declare it: COMPONENT " +
          (is_node ? name.substr(name.rfind('/') + 1) + " NODE " + name : name) +
@@ -162,20 +164,8 @@ class Left {
   std::optional<AdaptationType> lifecycle_;  // activated or deactivated, and not started anew since
 };
 
-// Whether the one at `place` brings up again what an earlier one took down, and something else is
-// adapted between the two.
-bool takes_back(const std::vector<syntax::Adaptation>& all, std::size_t place) {
-  const syntax::Adaptation& up = all[place];
-  if (up.type != kActivate && up.type != kStart) return false;
-  bool is_between = false;
-  for (std::size_t i = place; i-- > 0;) {
-    if (all[i].component.text != up.component.text) {
-      is_between = true;
-    } else {
-      return is_between && all[i].type == (up.type == kStart ? kStop : kDeactivate);
-    }
-  }
-  return false;
+bool brings_up_again(AdaptationType later, AdaptationType earlier) {
+  return (later == kStart && earlier == kStop) || (later == kActivate && earlier == kDeactivate);
 }
 
 // The producers of all components, in one array: a list for each would be thousands of small
@@ -194,15 +184,27 @@ class Producers {
   std::size_t begin(std::size_t component) const { return ends_[component]; }
   std::size_t end(std::size_t component) const { return ends_[component + 1]; }
   std::size_t operator[](std::size_t place) const { return all_[place]; }
-  std::size_t components() const { return ends_.size() - 1; }
 
  private:
   std::vector<std::size_t> ends_;  // of what is in front of each component, and of the last one
   std::vector<std::size_t> all_;
 };
 
+// The first component of each node.
+using ComponentsByNode = std::unordered_map<std::string_view, ComponentId>;
+
+ComponentsByNode components_by_node(const RuleSet& rules) {
+  ComponentsByNode all;
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    const std::string& node = rules.components[c].node;
+    if (!node.empty()) all.emplace(node, ComponentId(c));
+  }
+  return all;
+}
+
 // The component whose state, samples or log lines the input is; empty: the rules do not say.
-std::optional<ComponentId> owner_of(const Input& input, const RuleSet& rules) {
+std::optional<ComponentId> owner_of(const Input& input, const RuleSet& rules,
+                                    const ComponentsByNode& nodes) {
   using enum Input::Kind;
   switch (input.subject()) {
     case Input::Subject::kComponent:
@@ -219,45 +221,62 @@ std::optional<ComponentId> owner_of(const Input& input, const RuleSet& rules) {
   const Topic& topic = rules[input.topic];
   if (topic.publisher) return topic.publisher;
   // A topic below the name of a node is private to it. A node may stand below the name of another.
-  std::optional<ComponentId> owner;
-  for (std::size_t c = 0; c < rules.components.size(); ++c) {
-    const std::string& node = rules.components[c].node;
-    const bool is_below = !node.empty() && topic.name.starts_with(node + "/");
-    if (is_below && (!owner || node.size() > rules[*owner].node.size())) owner = ComponentId(c);
+  std::string_view above = topic.name;
+  for (auto slash = above.rfind('/'); slash != above.npos; slash = above.rfind('/')) {
+    above = above.substr(0, slash);
+    if (const auto owner = nodes.find(above); owner != nodes.end()) return owner->second;
   }
-  return owner;
+  return std::nullopt;
 }
 
 // The components that the trigger is about. Empty also if one of its inputs has no known owner.
-std::set<std::size_t> subjects_of(const Rule& rule, const RuleSet& rules) {
+std::set<std::size_t> subjects_of(const Rule& rule, const RuleSet& rules,
+                                  const ComponentsByNode& nodes) {
   std::set<std::size_t> subjects;
   for (const InputId input : rule.inputs) {
-    const auto owner = owner_of(rules[input], rules);
+    const auto owner = owner_of(rules[input], rules, nodes);
     if (!owner) return {};
     subjects.insert(owner->index);
   }
   return subjects;
 }
 
-// One of `subjects` that the component depends on by declared dependencies, directly or not. Empty:
-// it depends on none, or is one itself.
-std::optional<std::size_t> producer_among(const std::set<std::size_t>& subjects,
-                                          std::size_t component, const Producers& producers) {
-  if (subjects.contains(component)) return std::nullopt;
-  std::vector<bool> seen(producers.components());
-  std::vector<std::size_t> open{component};
-  while (!open.empty()) {
-    const std::size_t here = open.back();
-    open.pop_back();
-    if (subjects.contains(here)) return here;
-    for (std::size_t place = producers.begin(here); place < producers.end(here); ++place) {
-      if (seen[producers[place]]) continue;
-      seen[producers[place]] = true;
-      open.push_back(producers[place]);
+// Searches declared dependencies for producers.
+class ProducerSearch {
+ public:
+  explicit ProducerSearch(const RuleSet& rules)
+      : producers_(rules), seen_by_(rules.components.size()) {}
+
+  // One of `subjects` that the component depends on, directly or not. Empty: it depends on none, or is
+  // one itself, or all searches together have passed kMostSteps dependencies.
+  std::optional<std::size_t> producer_among(const std::set<std::size_t>& subjects,
+                                            std::size_t component) {
+    if (subjects.contains(component)) return std::nullopt;
+    ++search_;
+    std::vector<std::size_t> open{component};
+    while (!open.empty()) {
+      const std::size_t here = open.back();
+      open.pop_back();
+      if (subjects.contains(here)) return here;
+      for (std::size_t place = producers_.begin(here); place < producers_.end(here); ++place) {
+        if (steps_left_ == 0) return std::nullopt;
+        --steps_left_;
+        const std::size_t producer = producers_[place];
+        if (std::exchange(seen_by_[producer], search_) != search_) open.push_back(producer);
+      }
     }
+    return std::nullopt;
   }
-  return std::nullopt;
-}
+
+ private:
+  // A thousand rules of four strategies, on a robot with 500 dependencies, need no more.
+  static constexpr std::size_t kMostSteps = 2'000'000;
+
+  Producers producers_;
+  std::vector<std::size_t> seen_by_;  // the last search that found it, by component
+  std::size_t search_ = 0;
+  std::size_t steps_left_ = kMostSteps;
+};
 
 }  // namespace
 
@@ -266,7 +285,13 @@ std::vector<bool> steps_of(const syntax::Strategy& strategy) {
   std::vector<bool> begins(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) begins[i] = all[i].begins_step;
   if (std::ranges::find(begins, true) != begins.end()) return begins;
-  for (std::size_t i = 0; i < all.size(); ++i) begins[i] = takes_back(all, i);
+  std::unordered_map<std::string_view, std::size_t> last;  // of each component, until now
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [before, is_first] = last.try_emplace(all[i].component.text, i);
+    const std::size_t earlier = std::exchange(before->second, i);
+    // Something else is adapted between the two.
+    begins[i] = i > earlier + 1 && brings_up_again(all[i].type, all[earlier].type);
+  }
   return begins;
 }
 
@@ -317,10 +342,14 @@ void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnost
   }
 }
 
-void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
-                    std::vector<Diagnostic>& diagnostics) {
+void check_launches(const syntax::Rule& rule, const Symbols& symbols, const RuleSet& rules,
+                    RuleId id, std::size_t said, std::vector<Diagnostic>& diagnostics) {
+  std::map<std::uint32_t, std::size_t> unknown;  // diagnostics of names, by where these begin
+  for (std::size_t d = said; d < diagnostics.size(); ++d) {
+    if (diagnostics[d].code == Code::kUnknownName) unknown.emplace(diagnostics[d].span.begin, d);
+  }
   std::vector<Diagnostic> impossible;
-  std::set<std::string> components;        // that lack it
+  std::set<ComponentId> components;        // that lack it
   std::vector<std::size_t> misspelt;       // diagnostics
   std::size_t failing = 0;                 // strategies
   auto written = rule.strategies.begin();  // in the same order, but for those without a name
@@ -333,17 +362,14 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
     const std::size_t place = missing->written;
     ++failing;
     // A misspelt name is the mistake; the component that is meant may well have a LAUNCH.
-    const Span name = written->adaptations[place].component.span;
-    const auto its = std::find_if(diagnostics.begin(), diagnostics.end(), [&](const auto& d) {
-      return d.code == Code::kUnknownName && d.span == name;
-    });
-    if (its != diagnostics.end()) {
-      misspelt.push_back(static_cast<std::size_t>(its - diagnostics.begin()));
+    const auto its = unknown.find(written->adaptations[place].component.span.begin);
+    if (its != unknown.end()) {
+      misspelt.push_back(its->second);
       continue;
     }
     const bool is_ended = missing->type == kRedeploy;
-    components.insert(rules[missing->component].name);
-    const std::string undeclared = remedy_of_undeclared(rules[missing->component], rules);
+    components.insert(missing->component);
+    const std::string undeclared = remedy_of_undeclared(rules[missing->component], symbols);
     impossible.push_back(
         {Code::kNoLaunch, Severity::kWarning, written->adaptations[place].span,
          "strategy '" + strategy.name + "' can never run: component '" +
@@ -362,11 +388,11 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
   if (is_never_valid) {
     // One mistake, one message: this one says what those of the strategies would.
     const bool is_one = components.size() == 1;
-    const auto only = std::ranges::find(rules.components, *components.begin(), &Component::name);
-    const std::string undeclared = is_one ? remedy_of_undeclared(*only, rules) : "";
+    const Component& first = rules[*components.begin()];
+    const std::string undeclared = is_one ? remedy_of_undeclared(first, symbols) : "";
     diagnostics.push_back({Code::kNeverValid, Severity::kError, rule.name.span,
                            "no strategy of rule '" + rule.name.text + "' can ever run: " +
-                               (is_one ? "component '" + *components.begin() + "' has"
+                               (is_one ? "component '" + first.name + "' has"
                                        : "the components that they start have") +
                                " no LAUNCH command",
                            !undeclared.empty()
@@ -406,13 +432,14 @@ void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
 void check_effects(const std::vector<RuleConditions>& conditions, const RuleSet& rules,
                    std::vector<Diagnostic>& diagnostics) {
   if (rules.dependencies.empty()) return;
-  const Producers producers(rules);
+  const ComponentsByNode nodes = components_by_node(rules);
+  ProducerSearch search(rules);
   for (const RuleConditions& rule : conditions) {
-    const std::set<std::size_t> subjects = subjects_of(rules[rule.rule], rules);
+    const std::set<std::size_t> subjects = subjects_of(rules[rule.rule], rules, nodes);
     for (std::size_t s = 0; !subjects.empty() && s < rule.strategies.size(); ++s) {
       const Strategy& strategy = rules[rules[rule.rule].strategies[s]];
       const auto producer_of = [&](ComponentId c) {
-        return producer_among(subjects, c.index, producers);
+        return search.producer_among(subjects, c.index);
       };
       const auto begins_anew = [](const culprit::Adaptation& a) {
         return !a.group && (a.type == kRestart || a.type == kRedeploy);

@@ -10,6 +10,8 @@
 
 namespace culprit {
 
+class Symbols;
+
 // For each adaptation whether it begins a step: THEN. Without any THEN, one that brings up again what
 // an earlier one took down for an adaptation between the two.
 std::vector<bool> steps_of(const syntax::Strategy& strategy);
@@ -20,9 +22,9 @@ std::vector<bool> steps_of(const syntax::Strategy& strategy);
 void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnostic>& diagnostics);
 
 // Strategies that need a LAUNCH command that is not there, and rules for which no strategy is left
-// then.
-void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
-                    std::vector<Diagnostic>& diagnostics);
+// then. `said`: the number of diagnostics before those of this rule.
+void check_launches(const syntax::Rule& rule, const Symbols& symbols, const RuleSet& rules,
+                    RuleId id, std::size_t said, std::vector<Diagnostic>& diagnostics);
 
 // Strategies that stop a REQUIRED component, and leave it stopped. A last resort may.
 void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,

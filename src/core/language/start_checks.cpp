@@ -5,9 +5,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 #include "base/closest.h"
 #include "base/ros_names.h"
+#include "language/symbols.h"
 
 namespace culprit {
 namespace {
@@ -147,19 +149,25 @@ void check_command(const syntax::Component& written, const Component& component,
 
 void check_containers(const syntax::File& file, const RuleSet& rules,
                       std::vector<Diagnostic>& diagnostics) {
+  // A file that needs more has thousands of unknown containers, which are no slips.
+  std::size_t comparisons_left = Symbols::kMaxComparisons;
   std::vector<std::string_view> nodes;
+  std::unordered_map<std::string_view, const Component*> by_node;  // the first
   for (const Component& component : rules.components) {
     if (!component.node.empty() && !component.composed) nodes.push_back(component.node);
+    by_node.emplace(component.node, &component);
+    for (const std::string& other : component.other_nodes) by_node.emplace(other, &component);
   }
   // Declared components come first, in the order of the file.
   for (std::size_t i = 0; i < file.components.size(); ++i) {
     const syntax::Component& written = file.components[i];
     if (!written.container || !rules.components[i].composed) continue;
     const std::string& container = written.container->text;
-    const auto other = std::ranges::find_if(
-        rules.components, [&](const Component& each) { return each.has_node(container); });
-    if (other == rules.components.end()) {
-      const std::string near = closest_full_name(container, nodes);
+    const auto other = by_node.find(container);
+    if (other == by_node.end()) {
+      const bool is_compared = nodes.size() <= comparisons_left;
+      if (is_compared) comparisons_left -= nodes.size();
+      const std::string near = is_compared ? closest_full_name(container, nodes) : "";
       diagnostics.push_back(
           {Code::kNoContainer, Severity::kWarning, written.container->span,
            "no component has the node '" + container + "', so culprit cannot start this container",
@@ -167,10 +175,10 @@ void check_containers(const syntax::File& file, const RuleSet& rules,
                               ", with the LAUNCH or UNIT that starts it"
                         : "did you mean '" + near + "'?",
            replacement(written.container->span, near)});
-    } else if (other->composed) {
+    } else if (other->second->composed) {
       diagnostics.push_back(
           {Code::kNoContainer, Severity::kError, written.container->span,
-           "component '" + other->name + "' is no container: a container loads it itself",
+           "component '" + other->second->name + "' is no container: a container loads it itself",
            "name the node of the container, as ros2 component list shows it"});
     }
   }

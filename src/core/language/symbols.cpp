@@ -215,11 +215,9 @@ void Symbols::declare_group(const syntax::Group& written) {
 }
 
 std::optional<GroupId> Symbols::group(const syntax::Name& name) {
+  if (is_group(name.text)) return std::get<GroupId>(rules_[*known_signal(name.text)].source);
   std::vector<std::string_view> groups;
-  for (std::size_t g = 0; g < rules_.groups.size(); ++g) {
-    if (rules_.groups[g].name == name.text) return GroupId(g);
-    groups.push_back(rules_.groups[g].name);
-  }
+  for (const Group& each : rules_.groups) groups.push_back(each.name);
   if (broken_signals_.contains(name.text)) return std::nullopt;  // it may have been declared as one
   const std::string near = near_name(name.text, groups);
   diagnostics_.push_back(
@@ -347,6 +345,10 @@ bool Symbols::is_looked_up(const std::string& signal) const {
          std::holds_alternative<LookedUp>(rules_[*found].source);
 }
 
+bool Symbols::is_topic(std::string_view name) const {
+  return place_of(name, rules_.topics, topics_).has_value();
+}
+
 std::string Symbols::topic_of_signal(std::string_view name) const {
   const auto found = known_signal(name);
   const auto* field = found ? std::get_if<TopicField>(&rules_[*found].source) : nullptr;
@@ -354,7 +356,8 @@ std::string Symbols::topic_of_signal(std::string_view name) const {
 }
 
 bool Symbols::is_declared_component(std::string_view name) const {
-  return std::ranges::find(declared_components_, name) != declared_components_.end();
+  const auto known = place_of(name, rules_.components, components_);
+  return known && rules_.components[*known].declared && !is_group(name);
 }
 
 std::string Symbols::forget_near_miss(const std::string& signal) {

@@ -53,6 +53,8 @@ class Symbols {
   SignalId signal(const syntax::Name& name);
   // A signal that the file uses and does not declare, in a lenient check; a strict one has said so.
   bool is_looked_up(const std::string& signal) const;
+  // Whether the rules read a topic of this name.
+  bool is_topic(std::string_view name) const;
   // The topic that the declared signal `name` reads; empty: none.
   std::string topic_of_signal(std::string_view name) const;
   TopicId topic(const std::string& name, std::optional<ComponentId> publisher = std::nullopt);
