@@ -27,7 +27,8 @@ using Parameters = std::map<std::string, ParameterValue>;
 
 constexpr std::size_t kLongestFile = 1 << 20;  // bytes
 constexpr int kDeepest = 16;
-constexpr std::size_t kMost = 10'000;  // parameters: what aliases can make of a file is not little
+constexpr std::size_t kMost = 10'000;                      // parameters
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;  // with aliases and names in full
 constexpr const char* kParameters = "ros__parameters";
 
 struct WrongFile : std::runtime_error {
@@ -44,16 +45,22 @@ std::vector<std::string> split_name(const std::string& name) {
   return tokens;
 }
 
-using Tokens = std::vector<std::string>::const_iterator;
-// "*" stands for one token, "**" for any number.
-bool matches(Tokens pattern, Tokens end_of_pattern, Tokens name, Tokens end) {
-  if (pattern == end_of_pattern) return name == end;
-  if (*pattern == "**") {
-    if (matches(pattern + 1, end_of_pattern, name, end)) return true;
-    return name != end && matches(pattern, end_of_pattern, name + 1, end);
+// "*" stands for one token, "**" for any number. Takes time in proportion to both lengths, whatever the
+// pattern.
+bool matches(const std::vector<std::string>& pattern, const std::vector<std::string>& name) {
+  std::vector<bool> is_matched(name.size() + 1);  // the first i tokens, by the pattern so far
+  is_matched[0] = true;
+  for (const std::string& token : pattern) {
+    if (token == "**") {
+      for (std::size_t i = 1; i <= name.size(); ++i)
+        is_matched[i] = is_matched[i] || is_matched[i - 1];
+      continue;
+    }
+    for (std::size_t i = name.size(); i > 0; --i)
+      is_matched[i] = is_matched[i - 1] && (token == "*" || token == name[i - 1]);
+    is_matched[0] = false;
   }
-  return name != end && (*pattern == "*" || *pattern == *name) &&
-         matches(pattern + 1, end_of_pattern, name + 1, end);
+  return is_matched.back();
 }
 
 std::optional<bool> truth(const std::string& text) {
@@ -152,8 +159,20 @@ ParameterValue list_value(const YAML::Node& node) {
   return value;
 }
 
-void take_values(const YAML::Node& node, const std::string& name, int depth, Parameters& into) {
-  if (depth > kDeepest || into.size() > kMost)
+struct Found {
+  Parameters parameters;
+  std::size_t bytes = 0;  // of all that was read
+
+  void count(const YAML::Node& node, const std::string& name) {
+    bytes += 1 + name.size() + (node.IsScalar() ? node.Scalar().size() : 0);
+    if (bytes > kMostBytes)
+      throw WrongFile(node.Mark(), "in full, this file is larger than 16 MiB");
+  }
+};
+
+void take_values(const YAML::Node& node, const std::string& name, int depth, Found& into) {
+  into.count(node, name);
+  if (depth > kDeepest || into.parameters.size() > kMost)
     throw WrongFile(node.Mark(), "these are more parameters, or deeper, than a node has");
   if (node.IsMap()) {
     for (const auto& entry : node) {
@@ -165,13 +184,15 @@ void take_values(const YAML::Node& node, const std::string& name, int depth, Par
     throw WrongFile(node.Mark(),
                     name.empty() ? "parameters are a mapping" : name + " has no value");
   } else {
-    into[name] = node.IsSequence() ? list_value(node) : scalar(node);
+    for (std::size_t i = 0; node.IsSequence() && i < node.size(); ++i) into.count(node[i], "");
+    into.parameters[name] = node.IsSequence() ? list_value(node) : scalar(node);
   }
 }
 
 // Names of nodes and of namespaces, one in the other.
 void take_nodes(const YAML::Node& node, const std::string& pattern,
-                const std::vector<std::string>& wanted, int depth, Parameters& into) {
+                const std::vector<std::string>& wanted, int depth, Found& into) {
+  into.count(node, pattern);
   if (!node.IsMap() || depth > kDeepest)
     throw WrongFile(node.Mark(),
                     "expected the names of nodes, and below them " + std::string(kParameters));
@@ -182,9 +203,7 @@ void take_nodes(const YAML::Node& node, const std::string& pattern,
       take_nodes(entry.second, pattern + "/" + key, wanted, depth + 1, into);
       continue;
     }
-    const auto tokens = split_name(pattern);
-    if (matches(tokens.begin(), tokens.end(), wanted.begin(), wanted.end()))
-      take_values(entry.second, "", depth + 1, into);
+    if (matches(split_name(pattern), wanted)) take_values(entry.second, "", depth + 1, into);
   }
 }
 
@@ -260,10 +279,10 @@ Expected<std::vector<ros2::msg::Parameter>> read_parameter_file(const std::strin
   text << in.rdbuf();
   if (!in) return Error{"PARAMETERS: cannot read " + path};
   try {
-    Parameters found;
+    Found found;
     take_nodes(YAML::Load(text.str()), "", split_name(node), 0, found);
     std::vector<ros2::msg::Parameter> parameters;
-    for (auto& [name, value] : found) parameters.push_back({name, std::move(value)});
+    for (auto& [name, value] : found.parameters) parameters.push_back({name, std::move(value)});
     return parameters;
   } catch (const WrongFile& wrong) {
     return Error{"PARAMETERS: " + path + ":" + std::to_string(wrong.mark.line + 1) + ": " +

@@ -115,6 +115,44 @@ TEST(ParameterFile, EndsWhereAliasesDoNot) {
   EXPECT_FALSE(parameters_in(inside, "/n"));
 }
 
+TEST(ParameterFile, EndsWhereNeitherNamesNorEmptyMappingsCount) {
+  std::string text = "a: &a {}\n";
+  for (char c = 'b'; c < 'n'; ++c) {
+    text += std::string(1, c) + ": &" + c + " {";
+    for (char key = 'p'; key < 'z'; ++key)
+      text += std::string(key == 'p' ? "" : ", ") + key + ": *" + static_cast<char>(c - 1);
+    text += "}\n";
+  }
+  const auto expect_too_large = [](const std::string& file) {
+    const auto read = parameters_in(file, "/n");
+    ASSERT_FALSE(read);
+    EXPECT_THAT(read.error(), HasSubstr("larger than 16 MiB"));
+  };
+  expect_too_large(text);
+  std::string inside = "n:\n  ros__parameters:\n";
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) inside += "    " + line + "\n";
+  expect_too_large(inside);
+  const std::string long_text(100'000, 'x');
+  std::string list;
+  for (int i = 0; i < 1000; ++i) list += std::string(i == 0 ? "" : ", ") + "*t";
+  expect_too_large("n:\n  ros__parameters:\n    t: &t " + long_text + "\n    l: [" + list + "]\n");
+  std::string names;
+  for (int i = 0; i < 1000; ++i)
+    names += std::string(i == 0 ? "" : ", ") + "p" + std::to_string(i) + ": 1";
+  expect_too_large("n:\n  ros__parameters:\n    ? " + long_text + "\n    : {" + names + "}\n");
+}
+
+TEST(ParameterFile, MatchesAPatternOfAnyNumberOfStars) {
+  std::string stars;
+  for (int i = 0; i < 100'000; ++i) stars += "/**";
+  const auto names_for = [&](const std::string& node) {
+    return names_in_file("? \"" + stars + node + "\"\n:\n  ros__parameters: {a: 1}\n", "/x/y/n");
+  };
+  EXPECT_EQ(names_for("/n"), std::vector<std::string>{"a"});
+  EXPECT_EQ(names_for("/m"), std::vector<std::string>{});
+}
+
 TEST(ParameterFile, ReadsAndWritesTheValuesOfACommandLine) {
   for (const char* text :
        {"true", "3", "0.5", "[1, 2]", "[0.5, 2]", "[true, false]", "[a, b]", "fast"}) {
