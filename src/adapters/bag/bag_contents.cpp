@@ -6,6 +6,7 @@ namespace culprit::bag {
 namespace {
 
 constexpr std::size_t kMostLines = 20;
+constexpr std::size_t kMostQosBytes = std::size_t{16} << 20;  // of all topics
 
 // Recorders before Dashing, and tools that convert ROS 1 bags, write sensor_msgs/Image.
 std::string full_type(std::string type) {
@@ -22,7 +23,10 @@ std::size_t BagContents::place_of(BagTopic topic) {
   if (!topic.name.starts_with('/')) topic.name.insert(0, 1, '/');
   topic.type = full_type(std::move(topic.type));
   const auto [place, is_new] = places_.try_emplace({topic.name, topic.type}, topics_.size());
-  if (is_new) topics_.push_back(std::move(topic));
+  if (!is_new) return place->second;
+  if (topic.offered_qos.size() > kMostQosBytes - qos_bytes_) topic.offered_qos.clear();
+  qos_bytes_ += topic.offered_qos.size();
+  topics_.push_back(std::move(topic));
   return place->second;
 }
 

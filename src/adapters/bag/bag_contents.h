@@ -15,7 +15,7 @@ struct BagTopic {
   std::string name;      // with its leading slash, whether the recorder wrote it or not
   std::string type;      // "sensor_msgs/msg/Image", also where the recorder wrote sensor_msgs/Image
   std::string encoding;  // "cdr"; of any other, only the arrival of messages can be told
-  std::string offered_qos{};  // YAML, as the recorder wrote it; may be empty
+  std::string offered_qos{};  // YAML, as the recorder wrote it; may be empty, or left out for its size
 };
 
 struct BagMessage {
@@ -63,6 +63,7 @@ class BagContents {
 
  private:
   std::vector<BagTopic> topics_;
+  std::size_t qos_bytes_ = 0;
   std::map<std::pair<std::string, std::string>, std::size_t> places_;  // by name and type
   std::unordered_map<std::string, std::string> definitions_;           // by type
   std::size_t definition_bytes_ = 0;

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sys/stat.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "bag/bag_contents.h"
 #include "bag/test_bag.h"
 #include "bag/test_mcap.h"
 
@@ -174,6 +176,34 @@ TEST_F(BagTest, FewBytesThatClaimToBeManyAreLeftOut) {
     EXPECT_THAT(all.messages, ElementsAre("/a@30=good"));
     EXPECT_EQ(all.losses.size(), 1);
   }
+}
+
+TEST_F(BagTest, AFileOfChunksWithoutAnEndIsReadAsFarAsMemoryIsSpent) {
+  const BagFile::Limits limits{10'000};
+  std::string chunks;
+  for (int i = 0; i < 1000; ++i) chunks += chunk("", "");
+  const std::string file = mcap(two_topics() + said(1, 30, "good") + chunks, 1);
+  for (const std::string name : {"a.mcap", "b.mcap.zstd"}) {
+    const Read all = read(write(name, name == "a.mcap" ? file : test::zstd(file)), limits);
+    EXPECT_THAT(all.messages, ElementsAre("/a@30=good"));
+    EXPECT_THAT(all.losses, ElementsAre(HasSubstr("takes too much memory")));
+  }
+}
+
+TEST_F(BagTest, QosProfilesOfManyMegabytesAreLeftOut) {
+  BagContents contents;
+  const std::string profiles(std::size_t{5} << 20, ' ');
+  for (int i = 0; i < 10; ++i)
+    contents.place_of({"/t" + std::to_string(i), "std_msgs/msg/String", "cdr", profiles});
+  EXPECT_EQ(contents.topics().size(), 10u);
+  EXPECT_EQ(std::ranges::count(contents.topics(), profiles, &BagTopic::offered_qos), 3);
+}
+
+TEST_F(BagTest, APipeInAFolderIsNoPart) {
+  ASSERT_EQ(mkfifo((folder_ / "a_0.db3").c_str(), 0600), 0);
+  const auto opened = BagFile::open(folder_);
+  ASSERT_FALSE(opened) << "and it waited for no writer";
+  EXPECT_THAT(opened.error(), HasSubstr("no .db3 or .mcap file"));
 }
 
 TEST_F(BagTest, MessagesThatCannotBeAreCounted) {

@@ -211,8 +211,10 @@ Expected<BagParts> find_parts(const fs::path& path) {
   }
   std::vector<fs::path> there;
   bool has_ros1 = false;
+  std::error_code unreadable;
   for (const auto& entry : fs::directory_iterator(path, error)) {
-    if (is_part(entry.path())) there.push_back(entry.path());
+    // Opening a pipe would wait for its writer.
+    if (is_part(entry.path()) && entry.is_regular_file(unreadable)) there.push_back(entry.path());
     has_ros1 |= entry.path().extension() == ".bag";
   }
   if (error) return Error{error.message()};

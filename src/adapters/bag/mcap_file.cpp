@@ -71,6 +71,9 @@ void McapFile::find_blocks() {
     head.size = mcap::Fields(std::string_view(bytes.data() + 1, 8)).u64();
     if (head.code == mcap::kFooter) return;
     if (head.code == 0) return lose_rest(head, "no record begins there");
+    // A compressed file of some megabytes may hold a billion chunks of nothing.
+    if (blocks_.size() >= most_ / sizeof(Block))
+      return lose_rest(head, "the list of its chunks takes too much memory");
     if (take_in_record(head)) continue;
     if (!has_data_end_)
       lose_rest(head, source_.trouble().empty() ? "a record there is longer than the file"
