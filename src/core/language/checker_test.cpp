@@ -360,6 +360,20 @@ TEST(Checker, SurvivesHostileNesting) {
   EXPECT_FALSE(codes_of("RULE R\nPOLICIES ERROR\nTRIGGER (" + choices + ") == z\n").empty());
 }
 
+TEST(Checker, ShowsNoTextThatSteersATerminal) {
+  // C1 and directions are no control characters of ASCII.
+  const Source source("evil\x1b]0;x.rules",
+                      "TEXT \"\xc2\x9b"
+                      "2J\" \xe2\x80\xae \x1b[2J \xc3\xa4\n");
+  const std::string messages = all_messages(source, check(source));
+  EXPECT_FALSE(messages.empty());
+  for (const char* each : {"\x1b", "\xc2\x9b", "\xe2\x80\xae"})
+    EXPECT_EQ(messages.find(each), std::string::npos) << messages;
+  EXPECT_NE(messages.find("\"?2J\" ? ?[2J \xc3\xa4"), std::string::npos) << messages;
+  const Edit edit{{0, static_cast<std::uint32_t>(source.text().size())}, "\x1b"};
+  EXPECT_EQ(title_of(edit, source).find('\x1b'), std::string::npos);
+}
+
 // ---- files of thousands of components: comparisons that take the square of their number have an end
 
 std::size_t count_of(Code code, const std::vector<Diagnostic>& all) {

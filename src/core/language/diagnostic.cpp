@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/name_grammar.h"
+#include "base/utf8.h"
+
 namespace culprit {
 namespace {
 
@@ -21,12 +24,14 @@ std::string blanks_like(std::string_view text) {
   return out;
 }
 
-// Control characters would act on the reader's terminal.
-std::string printable(std::string_view text) {
-  std::string out(text);
-  std::replace_if(
-      out.begin(), out.end(), [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; },
-      '?');
+// Characters that act on the reader's terminal are replaced, each by one that is as wide.
+std::string without_controls(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::string_view next = text.substr(0, std::max<std::size_t>(character_length(text), 1));
+    out += next == "\t" || escape_controls(next) == next ? next : "?";
+    text.remove_prefix(next.size());
+  }
   return out;
 }
 
@@ -39,8 +44,8 @@ std::string to_string(Code code) {
 }
 
 std::string title_of(const Edit& edit, const Source& source) {
-  const std::string before = "'" + std::string(source.text(edit.span)) + "'";
-  const std::string after = "'" + edit.text + "'";
+  const std::string before = "'" + without_controls(source.text(edit.span)) + "'";
+  const std::string after = "'" + without_controls(edit.text) + "'";
   if (edit.span.begin == edit.span.end) return "insert " + after;
   return edit.text.empty() ? "remove " + before : "change " + before + " to " + after;
 }
@@ -119,12 +124,13 @@ std::string shown(const Source& source, Span span, const std::string& what, std:
   const std::string_view before = is_cut_before ? "... " : "";
   const std::string number = std::to_string(at.line);
   const std::string margin(std::max<std::size_t>(number.size(), 4), ' ');
-  std::string out = source.name() + ":" + number + ":" + std::to_string(at.column) + ": " + what;
+  std::string out = without_controls(source.name()) + ":" + number + ":" +
+                    std::to_string(at.column) + ": " + what;
   out += "\n";
   const bool is_text = source.text(line).find('\0') == std::string_view::npos;
   if (is_text) {
     out += std::string(paint.place) + margin.substr(number.size()) + number + " | " +
-           std::string(paint.off) + std::string(before) + printable(source.text(part)) +
+           std::string(paint.off) + std::string(before) + without_controls(source.text(part)) +
            (is_cut_behind ? " ..." : "") + "\n";
     out += std::string(paint.place) + margin + " | " + std::string(paint.off) +
            blanks_like(before) + blanks_like(source.text({part.begin, marked.begin})) +
@@ -134,7 +140,7 @@ std::string shown(const Source& source, Span span, const std::string& what, std:
   }
   if (remedy.empty()) return out;
   return out + std::string(paint.place) + margin + " = " + std::string(paint.off) +
-         std::string(paint.remedy) + printable(remedy) + std::string(paint.off) + "\n";
+         std::string(paint.remedy) + without_controls(remedy) + std::string(paint.off) + "\n";
 }
 
 }  // namespace
@@ -146,7 +152,7 @@ std::string render(const Diagnostic& diagnostic, const Source& source, Colour co
   const LocatedDiagnostic here = located(diagnostic, source);
   const std::string what = std::string(mark) + (is_error ? "error" : "warning") + "[" +
                            to_string(diagnostic.code) + "]" + std::string(paint.off) + ": " +
-                           printable(diagnostic.cause);
+                           without_controls(diagnostic.cause);
   std::string out =
       shown(source.file(here.place.file), here.place.span, what, mark, diagnostic.remedy, paint);
   for (const auto& note : here.notes)
