@@ -1,9 +1,11 @@
 // Attackers that know RTPS, and send what no participant sends: lies in the name of the camera, and what should break a
 // reader of datagrams.
+#include <algorithm>
 #include <arpa/inet.h>
 #include <array>
 #include <cerrno>
 #include <cstdint>
+#include <iterator>
 #include <linux/if_ether.h>
 #include <netinet/ip.h>
 #include <random>
@@ -68,6 +70,25 @@ Ongoing all_farewells_all_the_time(const Target& target) {
   return sends(target, target.eavesdropper->farewells_of(target.camera), 5ms);
 }
 
+// ---- of the camera, in another's name
+
+Ongoing disguised_farewells(const Target& target) {
+  const Guid camera = target.eavesdropper->of(target.camera).participant;
+  std::vector<Bytes> all = {ros2::announcement_of(5)};
+  std::ranges::copy(ros2::disguised_farewells(camera, ros2::made_up(5).prefix()),
+                    std::back_inserter(all));
+  return sends(target, all, 20ms);
+}
+Ongoing smuggled_farewells(const Target& target) {
+  const Guid camera = target.eavesdropper->of(target.camera).participant;
+  std::vector<Bytes> all = {ros2::announcement_of(5)};
+  std::ranges::copy(ros2::smuggled_farewells(camera, ros2::made_up(5).prefix()),
+                    std::back_inserter(all));
+  return sends(target, all, 20ms);
+}
+
+// ---- in the name of the camera and of culprit
+
 Guid writer_of(const Target& target, const std::string& topic) {
   for (const auto& each : target.eavesdropper->of(target.camera).endpoints) {
     if (!each.guid.is_reader() && each.topic.ends_with(topic)) return each.guid;
@@ -116,6 +137,15 @@ Ongoing absurd_heartbeats(const Target& target) {
     all.push_back(TestDatagram(from).data(each, kAbsurd).bytes());
   }
   return sends(target, all, 20ms);
+}
+// Those of a participant that is there pass the check of their origin.
+Ongoing absurd_ranges(const Target& target) {
+  std::vector<Guid> writers = writers_of_both(target);
+  for (const std::uint8_t entity : {3, 4}) writers.push_back(ros2::made_up(6, 0, entity));
+  std::vector<Bytes> all = {ros2::announcement_of(6)};
+  for (const Guid& each : writers)
+    std::ranges::copy(ros2::absurd_ranges(each), std::back_inserter(all));
+  return sends(target, all);
 }
 // Each would take 20 MB.
 Ongoing huge_fragments(const Target& target) {
@@ -236,6 +266,12 @@ std::vector<Attack> attacks_by_datagrams() {
       {"absurd_heartbeats", absurd_heartbeats, Place::kHere, true,
        "which does not send from there"},
       {"absurd_heartbeats_from_elsewhere", absurd_heartbeats, there},
+      {"absurd_ranges", absurd_ranges},
+      {"absurd_ranges_from_elsewhere", absurd_ranges, there},
+      {"disguised_farewells", disguised_farewells},
+      {"disguised_farewells_from_elsewhere", disguised_farewells, there},
+      {"smuggled_farewells", smuggled_farewells},
+      {"smuggled_farewells_from_elsewhere", smuggled_farewells, there},
       {"huge_fragments", huge_fragments, Place::kHere, true},
       {"huge_fragments_from_elsewhere", huge_fragments, there},
       {"replays", replays, Place::kHere, true},

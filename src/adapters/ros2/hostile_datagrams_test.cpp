@@ -117,6 +117,15 @@ TEST_F(HostileDatagrams, AbsurdSequenceNumbersMakeNobodyDeaf) {
   EXPECT_GE(victim->refused().count, 12u);
 }
 
+TEST_F(HostileDatagrams, AbsurdRangesMakeNobodyDeaf) {
+  for (const Guid& each : writers()) {
+    for (const Bytes& datagram : absurd_ranges(each)) attacker.send(datagram);
+  }
+  EXPECT_TRUE(speaks());
+  EXPECT_TRUE(discovers());
+  EXPECT_TRUE(speaks()) << "by now all of them were looked at";
+}
+
 TEST_F(HostileDatagrams, FragmentsOfHugeSamplesTakeNoMemory) {
   const std::size_t before = resident_bytes();
   for (const Guid& each : writers()) {

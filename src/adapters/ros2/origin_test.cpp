@@ -171,6 +171,21 @@ TEST(Origin, AParticipantTellsOfItselfOnlyInWhateverForm) {
   EXPECT_FALSE(robot.has_lost_something());
 }
 
+TEST(Origin, AParticipantTellsOfItselfOnlyWithinOtherSubmessages) {
+  const TestDomain domain;
+  LiveContext watcher(domain.options(), proving());
+  Robot robot(domain, watcher);
+  ASSERT_TRUE(robot.is_seen);
+  ASSERT_TRUE(watcher.sees_process("/camera", robot.process.pid()));
+  const auto stranger = Participant::create(domain.options(), [](DiscoveryEvent) {});
+  ASSERT_TRUE(stranger);
+  ASSERT_TRUE(robot.within([&] { return robot.participants().size() == 2; }));
+  const HostileProcess sends(
+      smuggled_farewells(robot.camera.info.guid, (*stranger)->guid().prefix()), robot.to, 200ms);
+  EXPECT_TRUE(robot.within([&] { return watcher->participant().origins().dropped() > 20; }));
+  EXPECT_FALSE(robot.has_lost_something());
+}
+
 TEST(Origin, FarewellsOfAStrangerRemoveANodeWhoseProcessIsNotKnown) {
   const TestDomain domain;
   LiveContext watcher(domain.options());

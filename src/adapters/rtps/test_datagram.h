@@ -24,9 +24,15 @@ class TestDatagram {
                           std::uint32_t count = 1) {
     return begin(0x07).readers().entity(writer).sequence(first).sequence(last).u32(count).end();
   }
-  // The gap from `first` to `base` - 1.
-  TestDatagram& gap(const Guid& writer, std::int64_t first, std::int64_t base) {
-    return begin(0x08).readers().entity(writer).sequence(first).sequence(base).u32(0).end();
+  // The gap from `first` to `base` - 1, and a bitmap of so many bits, which is not there.
+  TestDatagram& gap(const Guid& writer, std::int64_t first, std::int64_t base,
+                    std::uint32_t bits = 0) {
+    return begin(0x08).readers().entity(writer).sequence(first).sequence(base).u32(bits).end();
+  }
+  // Of all before `base`, with a bitmap of so many bits, which is not there.
+  TestDatagram& acknowledgement(const Guid& reader, const Guid& writer, std::int64_t base,
+                                std::uint32_t bits = 0) {
+    return begin(0x06).entity(reader).entity(writer).sequence(base).u32(bits).u32(1).end();
   }
   TestDatagram& data(const Guid& writer, std::int64_t sequence) {
     begin(0x15, 4).u16(0).u16(16).readers().entity(writer).sequence(sequence);

@@ -8,10 +8,12 @@
 #include <cstring>
 #include <ctime>
 #include <iterator>
+#include <limits>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include "rtps/datagram_sources.h"
@@ -85,6 +87,74 @@ inline std::vector<Bytes> disguised_farewells(const Guid& participant, const Gui
       from().end_of(announcer, 102, ends, Content::kPayload, list(0, 4)).bytes(),
       from().end_of(announcer, 103, far, Content::kNone, {}, kNegative).bytes(),
   };
+}
+
+// The same in the body of another submessage, or behind one whose length can be read in two ways: in the name of `liar`, and
+// in that of the participant.
+inline std::vector<Bytes> smuggled_farewells(const Guid& participant, const GuidPrefix& liar) {
+  const auto append = [](Bytes& to, const Bytes& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
+  const auto submessages = [](const TestDatagram& datagram) {
+    constexpr std::ptrdiff_t kHeader = 20;
+    return Bytes(datagram.bytes().begin() + kHeader, datagram.bytes().end());
+  };
+  Guid writer;
+  std::ranges::copy(liar.bytes, writer.bytes.begin());
+  writer.bytes[14] = 7, writer.bytes[15] = 3;
+  const Guid announcer = builtin_of(participant, 1, 0);
+  Bytes source = {0, 0, 0, 0, 2, 3, 1, 15};
+  append(source, Bytes(participant.bytes.begin(), participant.bytes.begin() + 12));
+  constexpr std::uint8_t kOfVendor = 0x80;
+  const std::vector<Bytes> before = {
+      {kOfVendor, 1, 0, 0},              // to the end of the datagram, or of nothing
+      {0x15, 1, 0, 0},                   // likewise
+      {0x01, 1, 0, 0},                   // of nothing
+      {kOfVendor, 1, 1, 0, 0},           // the next one begins behind it, or at a multiple of four
+      {kOfVendor, 1, 3, 0, 0, 0, 0, 0},  // likewise
+      {kOfVendor, 0, 4, 0, 0, 0, 0, 0}   // of 1024 bytes, or of four
+  };
+  std::vector<Bytes> all;
+  for (const Bytes& farewell :
+       {submessages(TestDatagram(liar).farewell(announcer, 104, participant)),
+        submessages(TestDatagram(liar)
+                        .submessage(0x0c, 0, source)
+                        .farewell(announcer, 105, participant))}) {
+    all.push_back(TestDatagram(liar).sample(writer, 1, farewell).bytes());
+    all.push_back(TestDatagram(liar).submessage(kOfVendor, 0, farewell).bytes());
+    for (const Bytes& each : before) {
+      Bytes whole = TestDatagram(liar).bytes();
+      append(whole, each);
+      append(whole, farewell);
+      all.push_back(std::move(whole));
+    }
+  }
+  return all;
+}
+
+// Ranges of numbers that end before they begin, or have more of them than can be counted; bitmaps that are not there. In the
+// name of `writer`, and of a reader beside it.
+inline std::vector<Bytes> absurd_ranges(const Guid& writer) {
+  using Range = std::pair<std::int64_t, std::int64_t>;
+  constexpr std::int64_t kLowest = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kHighest = std::numeric_limits<std::int64_t>::max();
+  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+  const TestDatagram from(writer.prefix());
+  Guid reader = writer;
+  reader.bytes[15] = 0xc7;
+  std::vector<Bytes> all;
+  for (const auto& [first, last] :
+       {Range{1, kLowest}, Range{kHighest, kLowest}, Range{kLowest, kHighest},
+        Range{kHighest, kHighest}, Range{0, 0}, Range{-1, 1}, Range{100, 1}, Range{1, 0}}) {
+    for (const std::uint32_t bits : {0u, 256u, 257u, kMost}) {
+      all.push_back(TestDatagram(from).gap(writer, first, last, bits).bytes());
+      all.push_back(TestDatagram(from).acknowledgement(reader, writer, last, bits).bytes());
+    }
+    all.push_back(TestDatagram(from).heartbeat(writer, first, last).bytes());
+    all.push_back(TestDatagram(from).fragment(writer, last, kMost, 1, kMost).bytes());
+    all.push_back(TestDatagram(from).fragment(writer, last, 0, 0xffff, kMost).bytes());
+  }
+  return all;
 }
 
 // A participant that does not exist.
