@@ -20,5 +20,7 @@ std::string printable(std::string_view text);
 // A text of a person or of a robot for one line of a message: each character that would steer a terminal or hide what is
 // written (C0 and C1 controls, directions of writing) as "\x1b" or "\u202e". All else stays.
 std::string escape_controls(std::string_view text);
+// The same for a message of several lines: the ends of lines, and tabs, stay.
+std::string escape_lines(std::string_view text);
 
 }  // namespace culprit

@@ -32,6 +32,11 @@ TEST(NameGrammar, EscapesWhatSteersATerminal) {
       << "all else stays";
 }
 
+TEST(NameGrammar, EscapesEachLineOfSeveral) {
+  EXPECT_EQ(escape_lines("a\x1b[2J\n\tb\r\n\n"), "a\\x1b[2J\n\tb\\x0d\n\n");
+  EXPECT_EQ(escape_lines(""), "");
+}
+
 TEST(NameGrammar, KnowsTopicsNodesAndNamespaces) {
   EXPECT_TRUE(is_valid_topic_name("/a/b_1"));
   EXPECT_TRUE(is_valid_node_name("camera_2"));

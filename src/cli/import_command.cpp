@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "base/amount.h"
+#include "base/name_grammar.h"
 #include "base/text_file.h"
 #include "cli/commands.h"
 #include "import/importer.h"
@@ -30,7 +31,7 @@ void print_summary(const ImportOptions& options, const foreign::Imported& import
     if (count == 0) continue;
     const std::string line = note.line == 0 ? "" : fmt::format(":{}", note.line);
     const std::string more = count == 1 ? "" : fmt::format(" ({} places)", count);
-    fmt::print(stderr, "{}{}: note: {}{}\n", options.file, line, note.text, more);
+    fmt::print(stderr, "{}{}: note: {}{}\n", options.file, line, escape_controls(note.text), more);
     count = 0;
   }
 }

@@ -52,6 +52,14 @@ TEST_F(ImportCommand, PrintsTheRulesWithoutAnOutputFile) {
   EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("RULE ScanLost\n"));
 }
 
+TEST_F(ImportCommand, ShowsNoTextThatSteersATerminal) {
+  std::ofstream(path("bad.txt")) << "BEGIN CONSTS\n  double x \x1b[2J\n";
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run({"import", path("bad.txt")}), kFailed);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::HasSubstr("bad.txt:2:12: '\\x1b[2J' is no number"));
+}
+
 TEST_F(ImportCommand, FailsWithAReason) {
   std::ofstream(path("bad.txt")) << "BEGIN CONSTS\n  double x ten\n";
   testing::internal::CaptureStderr();

@@ -15,6 +15,16 @@ namespace {
 
 using namespace fleet;
 
+TEST(TableReport, ShowsNoNameThatSteersATerminal) {
+  Report report{"Fleet", {}};
+  const TableQuery query{"Robots", "none", "", {{"robot", "robot"}}};
+  report.tables.push_back({query,
+                           {Row{"a\xc2\x9b"
+                                "2J\x1b"}}});
+  for (const std::string& shown : {to_text(report, 0), to_html(report, 0)})
+    EXPECT_NE(shown.find("a\\x9b2J?"), std::string::npos) << shown;
+}
+
 // Nine robots that are alike, and one that differs; the last one fails.
 struct FleetReports : testing::Test {
   void SetUp() override {

@@ -5,6 +5,7 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include "base/name_grammar.h"
 #include "base/xml.h"
 #include "fleet/clean.h"
 #include "fleet/incident_number.h"
@@ -35,7 +36,7 @@ std::string cell_text(const Field& field, Kind kind, double now) {
   if (!field) return "-";
   switch (kind) {
     case Kind::kText:
-      return fleet::clean(*field);
+      return escape_controls(fleet::clean(*field));
     case Kind::kCount:
       return fmt::format("{}", integer_in(field));
     case Kind::kNumber:

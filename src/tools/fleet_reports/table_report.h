@@ -53,7 +53,7 @@ Expected<Report> make_report(Postgres& server, const std::string& title,
                              const std::vector<TableQuery>& queries);
 
 // `now`: seconds since 1970, from which ages count. Names come from robots: what is no printable
-// text is shown as '?'.
+// text is shown as '?', and what steers a terminal is escaped.
 std::string to_text(const Report& report, double now);
 std::string to_json_text(const Report& report);
 std::string to_html(const Report& report, double now);
