@@ -1,7 +1,11 @@
 #include "web/aside.h"
 
 #include <csignal>
+#include <exception>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <system_error>
+#include <thread>
 
 #include "base/text_file.h"
 #include "owners/spawn.h"
@@ -27,6 +31,31 @@ Expected<Printed> run_aside(std::vector<std::string> arguments, const TemporaryF
     return Error{"it takes the processor longer than " + std::to_string(most_seconds) + " s"};
   if (!WIFEXITED(status)) return Error{arguments.front() + " was killed"};
   return Printed{WEXITSTATUS(status), std::move(*text)};
+}
+
+Answer FewAtOnce::make(const std::function<Answer()>& answer) {
+  auto& places = client_has_token() ? with_token_ : without_token_;
+  if (!places.try_acquire())
+    return refuse(409, "other answers of this kind are being made; ask again in a moment");
+  Answer made;
+  std::exception_ptr failure;
+  try {
+    std::thread thread([&] {
+      // Of this thread alone. Not the lowest: others may wait for a lock that it holds.
+      setpriority(PRIO_PROCESS, 0, kLowered);
+      try {
+        made = answer();
+      } catch (...) {
+        failure = std::current_exception();
+      }
+    });
+    thread.join();
+  } catch (const std::system_error&) {  // the system gives no thread
+    failure = std::current_exception();
+  }
+  places.release();
+  if (failure) std::rethrow_exception(failure);
+  return made;
 }
 
 }  // namespace culprit::web

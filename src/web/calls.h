@@ -96,7 +96,7 @@ std::vector<Route> status_routes(Hub& hub, const Metrics& metrics,
 std::vector<Route> rule_routes(RuleDesk& desk);
 
 // Decides for a given state of the robot, as `planner` does (docs/plan.md). Changes nothing and needs no robot. `load` finds what
-// the rules include.
+// the rules include. A few at once, with a lower priority.
 Route what_if_route(PlannerFactory planner, RuleLoader load = nullptr);
 
 // The journal for the rules that were sent. Errors: there is none, and why.

@@ -209,12 +209,16 @@ Answer recording(const std::filesystem::path& folder, const Json& query) {
 
 std::vector<Route> incident_routes(Hub& hub, std::filesystem::path journal,
                                    std::filesystem::path recordings) {
+  // A journal of some hundred megabytes takes seconds to read, and any user of this computer may look.
+  const auto few = std::make_shared<FewAtOnce>();
   return {{Method::kGet, "/api/incidents",
-           [&hub, journal, recordings](const Json& query) {
-             return list(hub, journal, recordings, query);
+           [&hub, journal, recordings, few](const Json& query) {
+             return few->make([&] { return list(hub, journal, recordings, query); });
            }},
           {Method::kGet, "/api/incidents/events",
-           [&hub, journal](const Json& query) { return events(hub, journal, query); }},
+           [&hub, journal, few](const Json& query) {
+             return few->make([&] { return events(hub, journal, query); });
+           }},
           {Method::kGet, "/api/incidents/page",
            [&hub, journal, recordings, making = std::make_shared<Mutex>()](const Json& query) {
              return page(hub, journal, recordings, *making, query);

@@ -1,6 +1,9 @@
+#include <memory>
+
 #include "language/checker.h"
 #include "rule_test/plan_report.h"
 #include "rule_test/state.h"
+#include "web/aside.h"
 #include "web/calls.h"
 #include "web/rule_desk.h"
 
@@ -31,11 +34,11 @@ Answer what_if(const Json& body, const PlannerFactory& planner, const RuleLoader
 }  // namespace
 
 Route what_if_route(PlannerFactory planner, RuleLoader load) {
-  return {Method::kPost, "/api/what-if",
-          [planner = std::move(planner), load = std::move(load)](const Json& body) {
-            return what_if(body, planner, load);
-          },
-          Role::kLook};
+  return {
+      Method::kPost, "/api/what-if",
+      [planner = std::move(planner), load = std::move(load), few = std::make_shared<FewAtOnce>()](
+          const Json& body) { return few->make([&] { return what_if(body, planner, load); }); },
+      Role::kLook};
 }
 
 }  // namespace culprit::web

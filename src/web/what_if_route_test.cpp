@@ -1,8 +1,15 @@
+#include <atomic>
+#include <latch>
+#include <sys/resource.h>
+#include <thread>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/text_file.h"
 #include "plan/paper_planner.h"
+#include "web/aside.h"
 #include "web/calls.h"
 
 namespace culprit::web {
@@ -33,6 +40,30 @@ TEST(WhatIfRoute, SaysWhatIsWrongWithTheRulesOrTheState) {
   body["rules"] = "RUEL\n";
   EXPECT_EQ(ask(body).status, 422);
   EXPECT_EQ(ask(nullptr).status, 400);
+}
+
+TEST(WhatIfRoute, MakesFewPlansAtOnceAndWithALowerPriority) {
+  constexpr int kAtOnce = FewAtOnce::kMost;
+  std::latch all_plan(kAtOnce + 1);
+  std::latch is_refused(1);
+  std::atomic<int> urgent = 0;
+  const Route route = what_if_route([&] {
+    if (getpriority(PRIO_PROCESS, 0) < FewAtOnce::kLowered) ++urgent;
+    all_plan.count_down();
+    is_refused.wait();
+    return std::make_unique<PaperPlanner>();
+  });
+  std::atomic<int> planned = 0;
+  std::vector<std::jthread> askers;
+  for (int i = 0; i < kAtOnce; ++i)
+    askers.emplace_back([&] { planned += route.answer(example()).status == 200 ? 1 : 0; });
+  all_plan.arrive_and_wait();
+  EXPECT_EQ(route.answer(example()).status, 409);
+  is_refused.count_down();
+  askers.clear();
+  EXPECT_EQ(planned, kAtOnce);
+  EXPECT_EQ(urgent, 0);
+  EXPECT_EQ(ask(example()).status, 200) << "another route has its own places";
 }
 
 }  // namespace

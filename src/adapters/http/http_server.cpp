@@ -40,6 +40,8 @@ const httplib::Headers kHeaders = {{"Content-Security-Policy",
                                    {"Cross-Origin-Resource-Policy", "same-origin"},
                                    {"Cache-Control", "no-store"}};
 
+thread_local bool has_token_here = false;  // the client of the request that is served
+
 bool has_body(const httplib::Request& request) {
   return request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0";
 }
@@ -166,6 +168,8 @@ std::string exactly(const std::string& path) {
 
 }  // namespace
 
+bool client_has_token() { return has_token_here; }
+
 class HttpServer::Http {
  public:
   Http(Options options, std::vector<Route> routes, Hub* hub)
@@ -259,6 +263,7 @@ class HttpServer::Http {
 
   // Why a request is not served; nothing: it is.
   std::optional<Answer> refusal_of(const httplib::Request& q) {
+    has_token_here = is_on_socket();
     if (auto refusal = is_on_socket() ? std::nullopt : refusal_of_sender(q)) return refusal;
     if (q.has_header("Transfer-Encoding")) return refuse(411, "say the length of the body");
     if (q.has_header("Content-Encoding")) return refuse(415, "send the body as it is");
@@ -276,6 +281,7 @@ class HttpServer::Http {
     if (is_foreign || !options_.access.allows_origin(q.get_header_value("Origin"), host))
       return refuse(403, "pages of other sites may not ask this server");
     const auto role = options_.access.role_of(q.get_header_value("Authorization"));
+    has_token_here = role.has_value();
     if (role) spare_this_request();
     const Role needed = role_for(q);
     if (!is_within_limits(q, role && *role >= needed ? role : std::nullopt))

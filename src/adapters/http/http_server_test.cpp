@@ -186,6 +186,19 @@ TEST_F(WebServer, NeedsTheTokenForEverythingWhereOthersCanReachIt) {
   EXPECT_EQ(client().Get("/api/echo", with_token)->status, 200);
 }
 
+TEST_F(WebServer, LetsRoutesKnowWhetherTheirClientHasAToken) {
+  HttpServer::Options options;
+  options.access = {kToken, {}, true};
+  const auto tell = [](const Json&) { return Answer{200, {{"token", client_has_token()}}}; };
+  auto started = HttpServer::start(options, {{Method::kGet, "/api/token", tell}}, nullptr);
+  ASSERT_TRUE(started) << started.error();
+  server = std::move(*started);
+  httplib::Client one = client();  // on one connection, and so on one thread
+  one.set_keep_alive(true);
+  EXPECT_EQ(one.Get("/api/token", with_token)->body, R"({"token":true})");
+  EXPECT_EQ(one.Get("/api/token")->body, R"({"token":false})");
+}
+
 TEST_F(WebServer, LetsEachTokenDoWhatItsRoleAllows) {
   HttpServer::Options options;
   options.access = {kToken, {}, false};

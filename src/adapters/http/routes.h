@@ -49,6 +49,9 @@ struct Route {
   }
 };
 
+// Whether the client of the request that this thread serves has shown a token, or is of culprit's own user.
+bool client_has_token();
+
 // The text at `member` of what was sent; nothing if it is none.
 std::optional<std::string> text_of(const Json& body, const char* member);
 
