@@ -19,7 +19,7 @@ bool is_of_laboratory(std::string_view command);
 void add_run(CLI::App& app, const std::string& version, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_top(CLI::App& app, int& exit_code);
-// pause, resume, silence, approve, refuse, propose, run-strategy
+// pause, resume, mute, approve, refuse, propose, run-strategy
 void add_orders(CLI::App& app, int& exit_code);
 void add_names(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app, int& exit_code);

@@ -56,8 +56,8 @@ void group_commands(CLI::App& app) {
   const Group groups[] = {
       {"On a robot", {"run", "doctor", "init", "drill", "graph", "plan", "modes"}},
       {"A running culprit",
-       {"status", "top", "pause", "resume", "silence", "approve", "refuse", "propose",
-        "run-strategy", "revive", "end-started", "record", "alerts"}},
+       {"status", "top", "pause", "resume", "mute", "approve", "refuse", "propose", "run-strategy",
+        "revive", "end-started", "record", "alerts"}},
       {"Rules",
        {"check", "explain", "fmt", "test", "import", "export", "policy", "web", "lsp", "mcp"}},
       {"History", {"log", "incident", "audit", "beliefs", "replay", "info"}},

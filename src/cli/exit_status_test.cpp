@@ -119,6 +119,7 @@ TEST(ExitStatus, IsOneWhereNoCulpritAnswers) {
                                              {"pause"},
                                              {"pause", "--all"},
                                              {"resume"},
+                                             {"mute", "camera"},
                                              {"silence", "camera"},
                                              {"approve", "R.s"},
                                              {"refuse", "R.s"},
@@ -137,9 +138,9 @@ TEST(JsonOption, IsSpeltTheSameEverywhere) {
   CLI::App app("culprit");
   int exit_code = 0;
   add_all(app, "test", exit_code);
-  for (const char* name : {"run", "check", "doctor", "explain", "test", "plan", "graph", "status",
-                           "pause", "resume", "silence", "approve", "refuse", "run-strategy",
-                           "revive", "alerts", "export", "log", "replay"})
+  for (const char* name :
+       {"run", "check", "doctor", "explain", "test", "plan", "graph", "status", "pause", "resume",
+        "mute", "approve", "refuse", "run-strategy", "revive", "alerts", "export", "log", "replay"})
     EXPECT_NE(app.get_subcommand(name)->get_option_no_throw("--json"), nullptr) << name;
   EXPECT_NE(app.get_subcommand("beliefs")->get_subcommand("show")->get_option_no_throw("--json"),
             nullptr);

@@ -43,21 +43,21 @@ struct Hands : testing::Test {
     const int code = program.wait().value_or(-1);
     return {code, program.output()};
   }
-  // A component for a time and a rule until it is lifted, once they are silenced.
-  void lists_what_is_silenced() const {
-    EXPECT_EQ(ended({"silence", "CameraGone", "--reason", "new lens"}).code, 0);
-    const Ended list = ended({"silence", "list"});
+  // A component for a time and a rule until it is lifted, once they are muted.
+  void lists_what_is_muted() const {
+    EXPECT_EQ(ended({"mute", "CameraGone", "--reason", "new lens"}).code, 0);
+    const Ended list = ended({"mute", "list"});
     EXPECT_EQ(list.code, 0);
-    EXPECT_THAT(list.said, HasSubstr("these are left alone"));
+    EXPECT_THAT(list.said, HasSubstr("these are muted"));
     EXPECT_THAT(list.said, HasSubstr("component depth, for another "));
     EXPECT_THAT(list.said, HasSubstr("rule CameraGone, by "));
     EXPECT_THAT(list.said, HasSubstr(": new lens"));
-    const Ended json = ended({"silence", "list", "--json"});
+    const Ended json = ended({"mute", "list", "--json"});
     EXPECT_THAT(json.said, HasSubstr(R"("component":"depth")"));
     EXPECT_THAT(json.said, HasSubstr(R"("rule":"CameraGone")"));
     EXPECT_THAT(json.said, HasSubstr(R"("left_s":59)")) << "of ten minutes";
-    EXPECT_EQ(ended({"silence", "CameraGone", "--lift"}).code, 0);
-    EXPECT_THAT(ended({"silence", "list"}).said, Not(HasSubstr("CameraGone")));
+    EXPECT_EQ(ended({"silence", "CameraGone", "--lift"}).code, 0) << "its former name";
+    EXPECT_THAT(ended({"mute", "list"}).said, Not(HasSubstr("CameraGone")));
   }
   // Until it says so; the last that was said.
   std::string status_says(const std::string& text) const {
@@ -124,10 +124,10 @@ TEST_F(Hands, SeeAndSteerARunningCulprit) {
   EXPECT_THAT(status_says("[paused]"), HasSubstr("[paused]"));
   const Ended resumed = ended({"resume"});
   EXPECT_EQ(resumed.code, 0) << resumed.said;
-  EXPECT_EQ(ended({"silence", "depth", "--for", "10min"}).code, 0);
-  EXPECT_THAT(ended({"status"}).said, HasSubstr("Left alone: depth until"));
-  lists_what_is_silenced();
-  EXPECT_EQ(ended({"silence", "depth", "--lift"}).code, 0);
+  EXPECT_EQ(ended({"mute", "depth", "--for", "10min"}).code, 0);
+  EXPECT_THAT(ended({"status"}).said, HasSubstr("Muted: depth until"));
+  lists_what_is_muted();
+  EXPECT_EQ(ended({"mute", "depth", "--lift"}).code, 0);
 
   // The names for completion in a shell.
   EXPECT_EQ(ended({"names", "names"}).said, "CameraGone\nDepthGone\ncamera\ndepth\n");

@@ -127,14 +127,13 @@ TEST_F(Neighbours, OfTwoRobotNamesDoNotManageTheSameNode) {
   ASSERT_TRUE(second.prints("camera is there")) << second.output();
   camera.signal(SIGKILL);
   camera.wait();
-  EXPECT_TRUE(second.prints("is held back: camera is silenced by another culprit"))
-      << second.output();
+  EXPECT_TRUE(second.prints("is held back: camera is muted by another culprit")) << second.output();
   ASSERT_TRUE(first.prints("CameraGone resolved by camera_redeploy")) << first.output();
   EXPECT_EQ(cameras().size(), 1u);
   EXPECT_THAT(second.output(), Not(HasSubstr("redeploy camera")));
   first.signal(SIGKILL);
   ASSERT_EQ(first.wait(), -SIGKILL);
-  ASSERT_TRUE(second.prints("the silence of camera is lifted")) << second.output();
+  ASSERT_TRUE(second.prints("camera is unmuted")) << second.output();
 }
 
 // As `respawn` in a launch file brings it about.

@@ -1,4 +1,4 @@
-// Orders to a running culprit from a terminal: pause, resume, silence, approve, refuse, propose,
+// Orders to a running culprit from a terminal: pause, resume, mute, approve, refuse, propose,
 // run-strategy.
 #include <algorithm>
 #include <functional>
@@ -75,7 +75,7 @@ MakeOrder about_strategy(const char* word) {
   };
 }
 
-Expected<Json> silence_of(const RunningCulprit& culprit, const OrderOptions& options) {
+Expected<Json> mute_of(const RunningCulprit& culprit, const OrderOptions& options) {
   const auto robot = culprit.client.get("/api/robot", web::LocalClient::kLargeAnswer);
   if (!robot) return Error{robot.error()};
   const auto components = names_in(*robot, "components");
@@ -133,50 +133,48 @@ int order(const OrderOptions& options, const MakeOrder& make) {
   return is_all_done && (here->others.empty() || !all) ? kOk : kFailed;
 }
 
-// Seconds that a silence still lasts at `now`, a time of the robot; null: until it is lifted.
-Json seconds_left(const Json& silence, double now) {
-  const auto until = silence.find("until");
-  if (until == silence.end() || !until->is_number()) return nullptr;
+// Seconds that a mute still lasts at `now`, a time of the robot; null: until it is lifted.
+Json seconds_left(const Json& mute, double now) {
+  const auto until = mute.find("until");
+  if (until == mute.end() || !until->is_number()) return nullptr;
   return std::max(until->get<double>() - now, 0.0);
 }
 
 // "rule Slow, for another 12 min, by ada: maintenance"
-std::string silence_line(const Json& silence) {
-  const bool is_rule = silence.contains("rule");
+std::string mute_line(const Json& mute) {
+  const bool is_rule = mute.contains("rule");
   std::string line = (is_rule ? "rule " : "component ") +
-                     web::text_of(silence, is_rule ? "rule" : "component").value_or("");
-  if (const auto left = silence.find("left_s"); left != silence.end() && left->is_number())
+                     web::text_of(mute, is_rule ? "rule" : "component").value_or("");
+  if (const auto left = mute.find("left_s"); left != mute.end() && left->is_number())
     line += ", for another " + in_words(from_seconds(left->get<double>()));
-  const std::string author = web::text_of(silence, "author").value_or("");
-  const std::string reason = web::text_of(silence, "reason").value_or("");
+  const std::string author = web::text_of(mute, "author").value_or("");
+  const std::string reason = web::text_of(mute, "reason").value_or("");
   if (!author.empty()) line += ", by " + author;
   return reason.empty() ? line : line + ": " + reason;
 }
 
 // Lists muted components and rules.
-int list_silences(const OrderOptions& options) {
+int list_mutes(const OrderOptions& options) {
   auto here = culprits_here(options.which);
   if (!here) return fail(here.error(), kUsage);
   if (here->answering.empty()) return fail(none_to_ask(*here));
   Json list = Json::array();
   for (const RunningCulprit& culprit : here->answering) {
-    // The state is a new one, and culprit publishes what is silenced in front of it.
+    // The state is a new one, and culprit publishes what is muted before it.
     const auto state = culprit.client.get("/api/state", web::LocalClient::kLargeAnswer);
     const auto control = culprit.client.get("/api/control", web::LocalClient::kLargeAnswer);
     if (!control || !state)
       return fail(culprit.name() +
                   " does not answer: " + (control ? state.error() : control.error()));
-    Json silences = control->value("silences", Json::array());
+    Json mutes = control->value("silences", Json::array());
     const double now = state->is_object() ? state->value("t", 0.0) : 0.0;
-    for (Json& silence : silences) {
-      if (silence.is_object()) silence["left_s"] = seconds_left(silence, now);
+    for (Json& mute : mutes) {
+      if (mute.is_object()) mute["left_s"] = seconds_left(mute, now);
     }
-    list.push_back({{"process", culprit.process}, {"silences", silences}});
+    list.push_back({{"process", culprit.process}, {"silences", mutes}});
     if (options.json) continue;
-    say(stdout, "{}: {}\n", culprit.name(),
-        silences.empty() ? "nothing is silenced" : "these are left alone");
-    for (const Json& silence : silences)
-      say(stdout, "  {}\n", escape_controls(silence_line(silence)));
+    say(stdout, "{}: {}\n", culprit.name(), mutes.empty() ? "nothing is muted" : "these are muted");
+    for (const Json& mute : mutes) say(stdout, "  {}\n", escape_controls(mute_line(mute)));
   }
   if (options.json) say(stdout, "{}\n", to_line(list));
   return kOk;
@@ -253,20 +251,21 @@ void add_orders(CLI::App& app, int& exit_code) {
   add_end_started(app, exit_code);
 
   options = make();
-  CLI::App* silence =
-      add_order(app, exit_code, "silence",
-                "Have a running culprit leave a component or a rule alone. It is still watched",
-                silence_of, options);
-  silence->add_option("NAME", options->name, "A component or a rule; list: what is left alone now")
+  CLI::App* mute =
+      add_order(app, exit_code, "mute",
+                "Mute a component or a rule: no strategy starts for it. It is still watched",
+                mute_of, options);
+  mute->alias("silence");  // as it was called before
+  mute->add_option("NAME", options->name, "A component or a rule; list: what is muted now")
       ->type_name("NAME")
       ->required();
-  auto* lasts = add_seconds(*silence, "--for", options->seconds, "How long (default: until --lift)",
-                            1, 7 * 24 * 3600)
+  auto* lasts = add_seconds(*mute, "--for", options->seconds, "How long (default: until --lift)", 1,
+                            7 * 24 * 3600)
                     ->default_str("");
-  silence->add_flag("--lift", options->lifts, "End it now")->excludes(lasts);
-  silence->callback([options, &exit_code] {
+  mute->add_flag("--lift", options->lifts, "Unmute it now")->excludes(lasts);
+  mute->callback([options, &exit_code] {
     const bool is_list = options->name == "list" && !options->lifts;
-    exit_code = is_list ? list_silences(*options) : order(*options, silence_of);
+    exit_code = is_list ? list_mutes(*options) : order(*options, mute_of);
   });
 
   for (const auto& [word, call, description] :

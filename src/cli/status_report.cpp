@@ -100,7 +100,7 @@ std::vector<std::string> modes_of(const Json& control) {
   if (control.is_object() && !is_set(control, "hears")) modes.emplace_back("deaf");
   if (is_set(control, "dry_run")) modes.emplace_back("only advises");
   if (!list_at(control, "asked").empty()) modes.emplace_back("asks");
-  if (!list_at(control, "silences").empty()) modes.emplace_back("leaves something alone");
+  if (!list_at(control, "silences").empty()) modes.emplace_back("mutes something");
   return modes;
 }
 
@@ -198,7 +198,7 @@ void add_people(const WhatCulpritSays& said, Lines& lines) {
     const auto until = number_at(each, "until");
     const auto clock = until ? clock_at(said, *until) : std::nullopt;
     const std::string reason = text_at(each, "reason");
-    lines.push_back(fmt::format("  Left alone: {}{}, by {}{}; culprit silence --lift {}", name,
+    lines.push_back(fmt::format("  Muted: {}{}, by {}{}; culprit mute --lift {}", name,
                                 clock ? " until " + by_the_clock(*clock, now) : "",
                                 text_at(each, "author"), reason.empty() ? "" : " (" + reason + ")",
                                 name));

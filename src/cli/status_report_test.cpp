@@ -90,10 +90,10 @@ TEST(StatusReport, SaysWhatKeepsCulpritFromActingAndHowToLetItGoOn) {
   said.control["asked"].push_back({{"rule", "CameraGone"}, {"strategy", "redeploy"}});
   EXPECT_EQ(verdict_of(said), Verdict::kNotWell) << "nobody would be helped";
   const std::string text = all_of(said);
-  EXPECT_THAT(text, HasSubstr("rover: all is well  [paused, asks and leaves something alone]"));
+  EXPECT_THAT(text, HasSubstr("rover: all is well  [paused, asks and mutes something]"));
   EXPECT_THAT(text, HasSubstr("culprit resume"));
   EXPECT_THAT(text, HasSubstr("culprit approve CameraGone.redeploy"));
-  EXPECT_THAT(text, HasSubstr("by ada (lens); culprit silence --lift fusion"));
+  EXPECT_THAT(text, HasSubstr("by ada (lens); culprit mute --lift fusion"));
 }
 
 // The nodes of a demonstration end with it.

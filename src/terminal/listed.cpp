@@ -17,7 +17,7 @@ std::vector<const CLI::App*> commands_in(const CLI::App& app) {
 
 const CLI::App* command_named(const CLI::App& app, const std::string& name) {
   const auto all = app.get_subcommands(
-      [&](const CLI::App* command) { return !name.empty() && command->get_name() == name; });
+      [&](const CLI::App* command) { return !name.empty() && command->check_name(name); });
   return all.empty() ? nullptr : all.front();
 }
 

@@ -70,16 +70,16 @@ std::string_view translated(std::string_view word, const Words& words,
 std::string_view command_of_other_tools(std::string_view word,
                                         const std::vector<std::string_view>& known) {
   static const Words kWords = {
-      {"start", "run"},         {"launch", "run"},     {"up", "run"},         {"stop", "pause"},
-      {"continue", "resume"},   {"unpause", "resume"}, {"ps", "status"},      {"list", "status"},
-      {"show", "status"},       {"watch", "top"},      {"history", "log"},    {"events", "log"},
-      {"why", "explain"},       {"lint", "check"},     {"validate", "check"}, {"verify", "check"},
-      {"diagnose", "doctor"},   {"mute", "silence"},   {"unmute", "silence"}, {"format", "fmt"},
-      {"draft", "init"},        {"generate", "init"},  {"new", "init"},       {"simulate", "test"},
-      {"logs", "log"},          {"journal", "log"},    {"reject", "refuse"},  {"deny", "refuse"},
-      {"unsilence", "silence"}, {"nodes", "graph"},    {"topics", "graph"},   {"restart", "revive"},
-      {"monitor", "run"},       {"daemon", "run"},     {"service", "run"},    {"bag", "info"},
-      {"diff", "fmt"},          {"web-ui", "web"},     {"ui", "web"},         {"edit", "web"}};
+      {"start", "run"},       {"launch", "run"},     {"up", "run"},         {"stop", "pause"},
+      {"continue", "resume"}, {"unpause", "resume"}, {"ps", "status"},      {"list", "status"},
+      {"show", "status"},     {"watch", "top"},      {"history", "log"},    {"events", "log"},
+      {"why", "explain"},     {"lint", "check"},     {"validate", "check"}, {"verify", "check"},
+      {"diagnose", "doctor"}, {"unmute", "mute"},    {"unsilence", "mute"}, {"format", "fmt"},
+      {"draft", "init"},      {"generate", "init"},  {"new", "init"},       {"simulate", "test"},
+      {"logs", "log"},        {"journal", "log"},    {"reject", "refuse"},  {"deny", "refuse"},
+      {"nodes", "graph"},     {"topics", "graph"},   {"restart", "revive"}, {"monitor", "run"},
+      {"daemon", "run"},      {"service", "run"},    {"bag", "info"},       {"diff", "fmt"},
+      {"web-ui", "web"},      {"ui", "web"},         {"edit", "web"}};
   return translated(word, kWords, known);
 }
 
@@ -112,10 +112,10 @@ std::string_view advice_about(std::string_view option, std::string_view command)
   constexpr std::string_view kFile = "write > FILE behind the command";
   constexpr std::string_view kRosArguments =
       "leave it out, for culprit takes no arguments of ROS; see culprit run --help";
-  constexpr std::string_view kList = "write silence list";
+  constexpr std::string_view kList = "write mute list";
   constexpr std::string_view kWarnings = "write --fail-on warning";
   constexpr std::string_view kLasting =
-      "a pause lasts until culprit resume; culprit silence NAME --for 5min leaves one part alone";
+      "a pause lasts until culprit resume; culprit mute NAME --for 5min leaves one part alone";
   constexpr std::string_view kSends = "alerts only sends a test";
   constexpr std::string_view kWrites = "fmt writes the file unless --check or --diff is given";
   constexpr auto kAdvice = std::to_array<Advice>({{"--werror", "check", kWarnings},
@@ -139,7 +139,7 @@ std::string_view advice_about(std::string_view option, std::string_view command)
                                                   {"--in-place", "fmt", kWrites},
                                                   {"-i", "fmt", kWrites},
                                                   {"--dry-run", "alerts", kSends},
-                                                  {"--list", "silence", kList},
+                                                  {"--list", "mute", kList},
                                                   {"--daemon", "run", kService},
                                                   {"--background", "run", kService},
                                                   {"--no-color", "", "set NO_COLOR=1"},
@@ -400,7 +400,7 @@ std::string remedy_of_extra(std::string_view extra, std::string_view before,
       return fmt::format("; did you mean {} '{}'?", known, printable(extra));
   }
   if (command.get_name() == "pause")
-    return "; culprit silence " + printable(extra) + " leaves one part alone";
+    return "; culprit mute " + printable(extra) + " leaves one part alone";
   return "; " + command.get_name() + " takes no arguments";
 }
 

@@ -209,7 +209,7 @@ std::string Metrics::text() const {
   }
   one("culprit_approvals_pending", "gauge", "Strategies that wait for a person's word.",
       counts.approvals_pending);
-  one("culprit_silences", "gauge", "Silences that hold now.", counts.silences);
+  one("culprit_silences", "gauge", "Components and rules that are muted now.", counts.silences);
   one("culprit_paused", "gauge", "1 while a person has paused it.", counts.is_paused ? 1 : 0);
   one("culprit_dry_run", "gauge", "1 while it only says what it would do.",
       counts.is_dry_run ? 1 : 0);

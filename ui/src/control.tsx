@@ -1,4 +1,4 @@
-// Orders of people to the manager: pause, resume, silence, run a strategy. Each is one call (POST /api/orders); its
+// Orders of people to the manager: pause, resume, mute, run a strategy. Each is one call (POST /api/orders); its
 // result is an event.
 import { useState } from 'preact/hooks'
 import { lasting, when } from './clock'
@@ -43,7 +43,7 @@ export function Approvals() {
   )
 }
 
-function Silences() {
+function Mutes() {
   const [what, choose] = useState('')
   const [minutes, setMinutes] = useState('10')
   const [reason, setReason] = useState('')
@@ -60,7 +60,7 @@ function Silences() {
     <form
       onSubmit={(e) => {
         e.preventDefault()
-        void order(`Silencing ${chosen}`, {
+        void order(`Muting ${chosen}`, {
           order: 'silence',
           ...subject(chosen),
           seconds: Number(minutes) * 60,
@@ -68,7 +68,7 @@ function Silences() {
         })
       }}
     >
-      <h3>Silence a component or a rule</h3>
+      <h3>Mute a component or a rule</h3>
       <div class="row">
         <label class="field wider">
           <span>what</span>
@@ -95,7 +95,7 @@ function Silences() {
           <input value={reason} maxLength={200} onInput={(e) => setReason(e.currentTarget.value)} />
         </label>
         <button type="submit" disabled={!canOrder()}>
-          Silence
+          Mute
         </button>
       </div>
       <ul>
@@ -105,16 +105,17 @@ function Silences() {
           return (
             <li class="bar">
               <span>
-                <b>{name}</b> is silenced
+                <b>{name}</b> is muted by {s.author}
                 {s.until !== null && ` until ${when(clockAt(s.until))}, ${lasting(s.until - now.value)} more`}
-                {s.reason && ` (${s.author}: ${s.reason})`}
+                {s.reason && `: ${s.reason}`}
               </span>
               <button
                 type="button"
+                aria-label={`Unmute ${name}`}
                 disabled={!canOrder()}
-                onClick={() => void order(`Lifting the silence of ${name}`, { order: 'lift', [kind]: name })}
+                onClick={() => void order(`Unmuting ${name}`, { order: 'lift', [kind]: name })}
               >
-                Lift
+                Unmute
               </button>
             </li>
           )
@@ -179,7 +180,7 @@ export function Control() {
       <details>
         <summary>More control</summary>
         <Author />
-        <Silences />
+        <Mutes />
         <ByHand />
       </details>
     </section>

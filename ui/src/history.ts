@@ -63,7 +63,7 @@ function situationAt(history: ManagerEvent[], t: number): Situation {
         if (!failure) break
         failure.decision = failure.blame = event
         break
-      case 'action_held_back': // paused, silenced, or beyond a limit: whose fault it is is known nevertheless
+      case 'action_held_back': // paused, muted, or beyond a limit: whose fault it is is known nevertheless
         if (!failure) break
         if (event.candidates?.length || !failure.decision?.candidates?.length) failure.decision = event
         failure.blame = event

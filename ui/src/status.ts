@@ -8,7 +8,7 @@ import { kLooks, type Tone } from './looks'
 import { can, clockAt, control, robot, state } from './store'
 
 export interface Mode {
-  name: 'paused' | 'deaf' | 'held' | 'dry-run' | 'approval' | 'silenced' | 'acting' | 'none' | 'bygone'
+  name: 'paused' | 'deaf' | 'held' | 'dry-run' | 'approval' | 'muted' | 'acting' | 'none' | 'bygone'
   word: string
   explanation: string
 }
@@ -28,13 +28,13 @@ export const modes = computed((): Mode[] => {
   const list: Mode[] = []
   const add = (name: Mode['name'], word: string, explanation: string) => list.push({ name, word, explanation })
   const asked = listed(now.asked.map((a) => a.strategy))
-  const silenced = listed(now.silences.map((s) => s.component ?? s.rule ?? ''))
+  const muted = listed(now.silences.map((s) => s.component ?? s.rule ?? ''))
   if (now.paused) add('paused', 'Ⅱ Paused', 'Nothing is changed on the robot until you resume.')
   if (now.hears === false) add('deaf', '⚠ Deaf', "culprit does not receive the robot's messages: it judges nothing and does nothing.")
   if (asked) add('approval', '? Approval', `Waits for your approval: ${asked}.`)
   if (now.dry_run) add('dry-run', '◌ Dry run', 'culprit only reports what it would do.')
   if (now.held_back && !now.paused) add('held', 'Ⅱ Held back', `No strategy starts: ${now.held_back}.`)
-  if (silenced) add('silenced', '∅ Silenced', `No strategy starts for ${silenced}.`)
+  if (muted) add('muted', '∅ Muted', `No strategy starts for ${muted}.`)
   if (list.length === 0) add('acting', '● Acting', 'culprit repairs failures.')
   return list
 })

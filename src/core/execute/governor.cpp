@@ -155,7 +155,7 @@ std::optional<std::string> Governor::objection(const Order& order, Autonomy auto
                  const bool is_there =
                      std::any_of(silences_.begin(), silences_.end(),
                                  [&](const ActiveSilence& s) { return s.what == o.what; });
-                 return is_there ? std::nullopt : Objection("it is not silenced");
+                 return is_there ? std::nullopt : Objection("it is not muted");
                },
                [&](const RunStrategy& o) { return objection_to_run(o.strategy, autonomy); },
                [&](const Revive&) -> Objection {
@@ -435,7 +435,7 @@ std::optional<Governor::Held> Governor::restraint_by_person(StrategyId id) const
     const std::string& what = component != nullptr ? knowledge_.rules[*component].name
                                                    : knowledge_.rules[strategy.rule].name;
     return Held{Restraint::kSilenced,
-                what + " is silenced by " + silence.author +
+                what + " is muted by " + silence.author +
                     (silence.reason.empty() ? "" : ": " + silence.reason),
                 silence.until};
   }

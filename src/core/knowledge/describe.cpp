@@ -175,7 +175,7 @@ class Describer {
            " times, and counted as one failure until it stays cleared";
   }
   std::string operator()(const SilenceEnded& e) const {
-    return name_of(e.what) + " is no longer silenced";
+    return name_of(e.what) + " is no longer muted";
   }
   std::string operator()(const StormBegan& e) const {
     return "culprit starts no more strategies; a person must look: " + e.reason;
@@ -256,11 +256,9 @@ class Describer {
   std::string operator()(const Refuse& o) const { return with_rule(o.strategy) + " is refused"; }
   std::string operator()(const Propose& o) const { return "propose " + with_rule(o.strategy); }
   std::string operator()(const Silence& o) const {
-    return name_of(o.what) + " is silenced" + (o.lasts ? " for " + in_words(*o.lasts) : "");
+    return name_of(o.what) + " is muted" + (o.lasts ? " for " + in_words(*o.lasts) : "");
   }
-  std::string operator()(const LiftSilence& o) const {
-    return "the silence of " + name_of(o.what) + " is lifted";
-  }
+  std::string operator()(const LiftSilence& o) const { return name_of(o.what) + " is unmuted"; }
   std::string operator()(const RunStrategy& o) const { return "run " + with_rule(o.strategy); }
   std::string operator()(const Revive&) const {
     return "start the components again that stay down";

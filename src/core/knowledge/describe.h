@@ -29,7 +29,7 @@ std::string two_decimals(double value);
 // "a, b and c"
 std::string listed(const std::vector<std::string>& items);
 
-// "camera is silenced for 10 min", "restart_camera is approved"
+// "camera is muted for 10 min", "restart_camera is approved"
 std::string describe(const Order& order, const RuleSet& rules);
 
 // "restart camera", "set exposure of camera"

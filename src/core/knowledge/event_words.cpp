@@ -55,7 +55,7 @@ constexpr std::array<EventWords, kKinds> kWords = [] {
       row<ActionHeldBack>("action_held_back", "held back", kWarning, Tone::kWarning),
       row<ApprovalAsked>("approval_asked", "APPROVE?", kWarning, Tone::kPerson, kStrong),
       row<ApprovalLapsed>("approval_lapsed", "lapsed", kInfo, Tone::kPerson),
-      row<SilenceEnded>("silence_ended", "silence", kInfo, Tone::kPerson),
+      row<SilenceEnded>("silence_ended", "unmuted", kInfo, Tone::kPerson),
       row<StormBegan>("storm_began", "STORM", kError, Tone::kAlarm, kStrong),
       row<StormEnded>("storm_ended", "calm", kInfo, Tone::kRelief),
       row<OutcomePending>("outcome_pending", "pending", kInfo, Tone::kAside),

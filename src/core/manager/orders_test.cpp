@@ -192,12 +192,11 @@ TEST(Orders, ASilencedComponentIsWatchedAndLeftAloneUntilTheSilenceEnds) {
   r["camera"].fault = "restart";
   r.run_for(8s);
   EXPECT_EQ(r.count("CameraDead detected"), 1u) << transcript(r);
-  EXPECT_EQ(r.count("CameraDead.restart is held back: camera is silenced by Ann: recalibration"),
-            1u)
+  EXPECT_EQ(r.count("CameraDead.restart is held back: camera is muted by Ann: recalibration"), 1u)
       << transcript(r);
   EXPECT_TRUE(r.asked.empty()) << transcript(r);
   r.run_for(8s);
-  EXPECT_EQ(r.count("camera is no longer silenced"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("camera is no longer muted"), 1u) << transcript(r);
   EXPECT_TRUE(r.works("camera")) << transcript(r);
 }
 
@@ -409,7 +408,7 @@ TEST(Orders, WhatMakesNoSenseIsRefusedWithItsReason) {
   r.order(order(Pause{}));
   r.order(order(RunStrategy{kLight}));
   EXPECT_EQ(r.count("Ann is refused: it is not paused"), 1u) << transcript(r);
-  EXPECT_EQ(r.count("Ann is refused: it is not silenced"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("Ann is refused: it is not muted"), 1u) << transcript(r);
   EXPECT_EQ(r.count("Ann is refused: there is no such component or rule"), 1u) << transcript(r);
   EXPECT_EQ(r.count("Ann is refused: there is no such strategy"), 1u) << transcript(r);
   EXPECT_EQ(r.count("Ann is refused: there is no such rule"), 1u) << transcript(r);

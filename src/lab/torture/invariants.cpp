@@ -185,7 +185,7 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
   for (const ComponentId component : strategy.components) {
     const std::string& where = rules_[component].name;
     if (!strategy.is_last_resort) spend(components_[component.index], "of " + where, at);
-    if (is_silenced(component, at)) fail(at, name + " is begun at the silenced " + where);
+    if (is_silenced(component, at)) fail(at, name + " is begun at the muted " + where);
     int busy = 0;
     for (const RuleId id : manager.knowledge().states.active()) {
       const auto& attempt = manager.knowledge().states[id].attempt;
@@ -206,7 +206,7 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
   if (!strategy.is_last_resort && is_downstream_of_an_attempt(manager.knowledge(), strategy, at))
     fail(at, name + " is begun downstream of what is being adapted");
   begun_now_.insert(chosen.strategy);
-  if (is_silenced(strategy.rule, at)) fail(at, name + " is begun though its rule is silenced");
+  if (is_silenced(strategy.rule, at)) fail(at, name + " is begun though its rule is muted");
   check_replacement(manager, strategy, truth, at);
   for (const ComponentId component : strategy.components) {
     const ComponentState& state = manager.knowledge().components[component];

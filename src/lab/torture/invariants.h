@@ -5,7 +5,7 @@
 // - No component is restarted more often than its bound allows, whichever rules ask for it, unless its
 //   process is known to be gone.
 // - No process is started while the component's old one is there.
-// - While paused nothing is asked that changes anything; at a silenced component nothing is begun;
+// - While paused nothing is asked that changes anything; at a muted component nothing is begun;
 //   while the robot is known to move nothing is begun.
 // - A component is adapted by one strategy at a time. No planner begins one downstream of an
 //   adaptation for a failure at least as critical; bayes not even for a lesser one, unless that is

@@ -106,7 +106,7 @@ std::string_view to_string(Kind kind) {
     case Kind::kPause:
       return "a person pauses";
     case Kind::kSilence:
-      return "is silenced";
+      return "is muted";
     case Kind::kRunByHand:
       return "a person runs its redeploy";
     case Kind::kFlap:

@@ -103,7 +103,7 @@ TEST(Torture, MishapsLeaveTheirMark) {
                            "waits for approval",
                            "its last resort is due",
                            "is abandoned",
-                           "is silenced",
+                           "is muted",
                            "INTERLOCK moving == false is false",
                            "was restarted a short while ago",
                            "and no more are allowed"})

@@ -219,8 +219,9 @@ TEST(Mcp, HasNoToolThatActs) {
     session.call(tool, {{"strategy", "A.b"}, {"reason", "x"}});
   session.call("propose", {{"strategy", "A.b"}, {"reason", "x"}});
   for (const Words& words : session.ran)
-    EXPECT_THAT(words.front(), Not(testing::AnyOf("run-strategy", "approve", "resume", "pause",
-                                                  "silence", "revive", "end-started", "run")));
+    EXPECT_THAT(words.front(),
+                Not(testing::AnyOf("run-strategy", "approve", "resume", "pause", "mute", "silence",
+                                   "revive", "end-started", "run")));
 }
 
 }  // namespace

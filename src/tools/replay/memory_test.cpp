@@ -163,7 +163,7 @@ TEST_F(Memory, OfSilencesLastsAsLongAsThey) {
   EXPECT_EQ(orders(), 1);
   while (robot.now < end - 1s) robot.run_for(100ms);
   EXPECT_EQ(choices().size(), 0u) << transcript();
-  EXPECT_GE(robot.count("camera is silenced by Ann: I am at it"), 1u) << transcript();
+  EXPECT_GE(robot.count("camera is muted by Ann: I am at it"), 1u) << transcript();
   robot.run_for(20s);
   EXPECT_TRUE(robot.works("camera")) << transcript();
 }
