@@ -108,9 +108,9 @@ void add_status(CLI::App& app, int& exit_code) {
       app.add_subcommand("status",
                          "Show failures, their root cause and the next step, as reported by the "
                          "culprits of this machine.\n"
-                         "Exits with 0 if all is well, with 3 if rules that are not ERROR are "
-                         "blind or simulated time stands still, and nothing else is wrong, "
-                         "else with 1.");
+                         "Exits with 0 if all is well. Exits with 3 if no failure is seen, but a "
+                         "rule that is not ERROR is blind, a component is not there, or simulated "
+                         "time stands still. Exits with 1 in all other cases.");
   command->add_flag("--json", options->json, "As one JSON document (docs/web.md)");
   command->add_flag("--watch", options->watch, "Report again every 2 s until Ctrl-C");
   options->which.add_to(*command);

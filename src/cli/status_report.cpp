@@ -1,8 +1,10 @@
 #include "cli/status_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -289,7 +291,9 @@ Verdict verdict_of(const WhatCulpritSays& said) {
                        list_at(said.control, "asked").empty();
   if (!may_act) return Verdict::kNotWell;
   if (look == "OK") return Verdict::kWell;
-  return look == "BLIND" || look == "TIME_HELD" ? Verdict::kSeesLess : Verdict::kNotWell;
+  constexpr auto kLess = std::to_array<std::string_view>(
+      {"BLIND", "TIME_HELD", "NEVER_SEEN", "DEAD", "HUNG", "STOPPED", "UNREACHABLE"});
+  return std::ranges::find(kLess, look) != kLess.end() ? Verdict::kSeesLess : Verdict::kNotWell;
 }
 
 std::vector<std::string> situation_lines(const WhatCulpritSays& said, Colour colour) {

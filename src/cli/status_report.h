@@ -20,9 +20,9 @@ struct WhatCulpritSays {
 };
 
 enum class Verdict : std::uint8_t {
-  kWell,      // no failure is seen, all rules can see, culprit may act, and no person is asked
-  kSeesLess,  // but for this: rules are blind, and none of them is an ERROR rule
-  kNotWell    // a failure, a blind ERROR rule, no rule that can see, or culprit cannot act
+  kWell,  // no failure is seen, all rules can see, all components are there, culprit may act, and no person is asked
+  kSeesLess,  // no failure is seen, but rules that are not ERROR are blind, or a component is not there
+  kNotWell  // a failure, a blind ERROR rule, no rule that can see, or culprit cannot act
 };
 Verdict verdict_of(const WhatCulpritSays& said);
 

@@ -135,6 +135,18 @@ TEST(StatusReport, NeverSaysThatAllIsWellWhileARuleIsBlind) {
   EXPECT_EQ(verdict_of(with_blind("WARNING")), Verdict::kSeesLess);
 }
 
+// No rule sees a failure, and yet not all is well: the exit status is another one, too.
+TEST(StatusReport, SeesLessWhileAComponentIsNotThere) {
+  for (const char* look : {"NEVER_SEEN", "DEAD", "HUNG", "STOPPED", "UNREACHABLE"}) {
+    WhatCulpritSays said = well();
+    said.state["overview"] = {{"look", look}, {"headline", "fusion is not there"}};
+    EXPECT_EQ(verdict_of(said), Verdict::kSeesLess) << look;
+    EXPECT_THAT(all_of(said), HasSubstr("rover: fusion is not there\n"));
+    said.control["paused"] = true;
+    EXPECT_EQ(verdict_of(said), Verdict::kNotWell) << look;
+  }
+}
+
 TEST(StatusReport, SaysThatNothingIsWatchedIfNoRuleCanSee) {
   WhatCulpritSays said = with_blind("WARNING");
   said.state["overview"] = {{"look", "WATCHING_NOTHING"},

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "knowledge/describe.h"
+#include "knowledge/presence.h"
 
 namespace culprit::live {
 namespace {
@@ -81,6 +82,9 @@ std::vector<ros2::Health> health(const Knowledge& knowledge) {
   } else if (blind > 0) {
     all[0].level = kWarn;
     all[0].message = fmt::format("no failure is seen, {} blind", blind);
+  } else if (const auto absence = worst_absence(knowledge)) {
+    all[0].level = kWarn;
+    all[0].message = "no failure is seen, but " + describe(*absence, knowledge.rules);
   }
   all[0].values = {{"rules", std::to_string(knowledge.rules.rules.size())},
                    {"failing", std::to_string(failing)},

@@ -19,9 +19,17 @@ RuleSet two_rules() {
               .rules;
 }
 
-TEST(HealthReport, IsOkWhileAllIsQuiet) {
+// A robot whose only component is there.
+struct Present {
+  Present() { knowledge.components[ComponentId(0)].alive = true; }
+
   const RuleSet rules = two_rules();
-  const Knowledge knowledge(rules);
+  Knowledge knowledge{rules};
+};
+
+TEST(HealthReport, IsOkWhileAllIsQuiet) {
+  const Present robot;
+  const Knowledge& knowledge = robot.knowledge;
   const auto all = health(knowledge);
   ASSERT_EQ(all.size(), 3u);
   for (const ros2::Health& status : all) EXPECT_EQ(status.level, 0) << status.name;
@@ -57,14 +65,28 @@ TEST(HealthReport, WarnsOfAFailureUnderRepairAndErrsWhenNothingIsLeftToTry) {
 
 // A person ordered it.
 TEST(HealthReport, IsOkWhileAStrategyIsUnderWayWithoutAFailure) {
-  const RuleSet rules = two_rules();
-  Knowledge knowledge(rules);
+  Present robot;
+  Knowledge& knowledge = robot.knowledge;
   Attempts(knowledge.states).begin(StrategyId(0), Time());
   const auto all = health(knowledge);
   EXPECT_EQ(all[0].level, 0);
   EXPECT_EQ(all[0].message, "all rules are quiet");
   EXPECT_EQ(all[1].level, 0);
   EXPECT_EQ(all[1].message, "quiet");
+}
+
+// As the page and `culprit status` do.
+TEST(HealthReport, WarnsOfAComponentThatIsNotThere) {
+  Present robot;
+  ComponentState& state = robot.knowledge.components[ComponentId(0)];
+  state.alive.reset();
+  EXPECT_EQ(health(robot.knowledge)[0].level, 1);
+  EXPECT_EQ(health(robot.knowledge)[0].message, "no failure is seen, but c is not seen yet");
+  state.is_missed = true;
+  EXPECT_EQ(health(robot.knowledge)[0].message, "no failure is seen, but c was never seen");
+  state.alive = false;
+  EXPECT_EQ(health(robot.knowledge)[0].level, 1);
+  EXPECT_EQ(health(robot.knowledge)[0].message, "no failure is seen, but c is down");
 }
 
 TEST(HealthReport, WarnsOfABlindRule) {
@@ -100,8 +122,10 @@ TEST(HealthReport, ErrsWhenARequiredComponentIsNotThere) {
   knowledge.components[ComponentId(0)].is_missed = false;
   knowledge.components[ComponentId(0)].alive = true;
   all = health(knowledge);
-  EXPECT_EQ(all[0].level, 0);
+  EXPECT_EQ(all[0].level, 1) << "b was never seen, either";
   EXPECT_EQ(all[1].level, 0);
+  knowledge.components[ComponentId(1)].alive = true;
+  EXPECT_EQ(health(knowledge)[0].level, 0);
 }
 
 }  // namespace

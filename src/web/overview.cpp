@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "knowledge/describe.h"
+#include "knowledge/presence.h"
 #include "web/component_health.h"
 
 namespace culprit::web {
@@ -83,6 +84,48 @@ Overview of_held(const std::vector<std::string>& held) {
           "/clock is paused: nothing is judged about them"};
 }
 
+std::string_view look_of(Presence presence) {
+  switch (presence) {
+    case Presence::kUnreachable:
+      return "UNREACHABLE";
+    case Presence::kDown:
+      return "DEAD";
+    case Presence::kHung:
+      return "HUNG";
+    case Presence::kStopped:
+      return "STOPPED";
+    case Presence::kNeverSeen:
+    case Presence::kNotSeenYet:
+      return "NEVER_SEEN";
+    case Presence::kUnknown:
+    case Presence::kStarting:
+      return "BLIND";
+    case Presence::kThere:
+      break;
+  }
+  return "OK";
+}
+
+// Says what to do about it.
+const char* remedy_of(Presence presence) {
+  switch (presence) {
+    case Presence::kNeverSeen:
+      return "no failure is seen; was it started, and is its NODE right?";
+    case Presence::kNotSeenYet:
+      return "no failure is seen; discovery goes on";
+    case Presence::kUnknown:
+      return "no failure is seen, and its health is unknown";
+    case Presence::kUnreachable:
+      return "no failure is seen; culprit receives nothing from its host";
+    default:
+      return "no rule reports it as a failure";
+  }
+}
+
+Overview of_absence(const Absence& absence, const Knowledge& knowledge) {
+  return {look_of(absence.how), describe(absence, knowledge.rules), remedy_of(absence.how)};
+}
+
 }  // namespace
 
 Overview overview_of(const Manager& manager) {
@@ -99,41 +142,16 @@ Overview overview_of(const Manager& manager) {
   if (const auto held = held_in_time(knowledge); !held.empty()) return of_held(held);
   if (knowledge.blindness.is_total()) return of_watching_nothing(knowledge);
   if (knowledge.blindness.count() > 0) return of_blind(knowledge);
-  std::size_t unseen = 0;
-  std::vector<std::string> dead;
-  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
-    const ComponentState& state = knowledge.components[ComponentId(c)];
-    unseen += state.is_missed ? 1 : 0;
-    if (state.alive == false) dead.push_back(knowledge.rules.components[c].name);
-  }
-  std::string detail = "no failure is seen by " + of_rules(knowledge.rules.rules.size());
-  if (unseen > 0)
-    detail +=
-        fmt::format("; {} never seen",
-                    unseen == 1 ? "one component was" : fmt::format("{} components were", unseen));
-  if (!dead.empty()) detail += "; not running: " + listed(dead);
-  return {"OK", "all is well", std::move(detail)};
+  if (const auto absence = worst_absence(knowledge)) return of_absence(*absence, knowledge);
+  return {"OK", "all is well", "no failure is seen by " + of_rules(knowledge.rules.rules.size())};
 }
 
 ComponentLook look_of(ComponentId id, std::size_t health, const Manager& manager) {
   const Knowledge& knowledge = manager.knowledge();
-  const ComponentState& state = knowledge.components[id];
   ComponentLook look{kHealthWords[health], ""};
-  if (knowledge.is_unheard(id) && !state.time_held) {
-    look = {"UNREACHABLE", "unreachable"};
-  } else if (state.process == ProcessState::kStopped && state.alive) {
-    look = {"STOPPED", "stopped"};
-  } else if (state.alive && state.hangs()) {
-    look = {"HUNG", "hangs"};
-  } else if (state.alive == false) {
-    look = {"DEAD", "down"};
-  } else if (!state.alive && !knowledge.graph.is_present(id)) {
-    if (!knowledge.discovered.has(id)) {
-      look = {"NEVER_SEEN", state.is_missed ? "never seen" : "not seen yet"};
-    } else {
-      look = {"BLIND", state.is_coming_up() ? "starting" : "unknown"};
-    }
-  } else if (state.time_held) {
+  if (const Presence presence = presence_of(id, knowledge); presence != Presence::kThere) {
+    look = {look_of(presence), to_string(presence)};
+  } else if (knowledge.components[id].time_held) {
     look = {"TIME_HELD", "clock paused"};
   } else if (health == 0) {
     const auto about = knowledge.states.touching(id);

@@ -17,7 +17,8 @@ struct Overview {
   // "OK"; of incidents "NON_CRITICAL", "WARNING", "ERROR", "EXHAUSTED"; "MISSING": a REQUIRED component is not there;
   // "BLIND", "BLIND_ERROR": no failure is seen, but some rules, one of them an ERROR rule, have no value;
   // "WATCHING_NOTHING": no rule can see; "DEAF": the robot cannot be heard; "TIME_HELD": no failure is seen, but the
-  // simulated time of some components stands still.
+  // simulated time of some components stands still; no failure is seen, but a component is "UNREACHABLE", "DEAD", "HUNG",
+  // "STOPPED", "NEVER_SEEN", or in an unknown state ("BLIND").
   std::string_view look;
   std::string headline;  // "camera is down, and 1 more"
   std::string detail;    // "no failure is seen by 3 rules"; of an incident: what is done about it

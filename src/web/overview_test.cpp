@@ -51,18 +51,36 @@ struct Overlooked {
   bool is_bright = true;
 };
 
-TEST(Overview, SaysThatAllIsWellAndWhichPartsNobodySaw) {
+TEST(Overview, SaysThatAllIsWellOnlyIfEachComponentIsThere) {
   Overlooked some;
   some.robot.add("camera", {}, "/rgb");
   some.robot.add("lamp");
   some.robot.discover();
-  some.run(30s);
-  EXPECT_EQ(some.overview().look, "OK") << transcript(some.robot);
-  EXPECT_EQ(some.overview().headline, "all is well");
-  EXPECT_EQ(some.overview().detail, "no failure is seen by 2 rules; one component was never seen");
+  some.run(1s);
+  EXPECT_EQ(some.overview().headline, "lidar is not seen yet");
+  EXPECT_EQ(some.look(2).condition, "not seen yet");
+  some.run(29s);
+  EXPECT_EQ(some.overview().look, "NEVER_SEEN") << transcript(some.robot);
+  EXPECT_EQ(some.overview().headline, "lidar was never seen");
+  EXPECT_THAT(some.overview().detail, HasSubstr("NODE"));
   EXPECT_EQ(some.look(0).look, "OK");
   EXPECT_EQ(some.look(2).look, "NEVER_SEEN");
   EXPECT_EQ(some.look(2).condition, "never seen");
+}
+
+TEST(Overview, NeverCallsARobotWellOfWhichAComponentWithoutARuleIsDown) {
+  Overlooked some;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("lamp");
+  some.robot.add("lidar");
+  some.robot.discover();
+  some.run(30s);
+  some.robot.kill("lidar");
+  some.run(30s);
+  EXPECT_EQ(some.overview().look, "DEAD") << transcript(some.robot);
+  EXPECT_EQ(some.overview().headline, "lidar is down");
+  EXPECT_EQ(some.overview().detail, "no rule reports it as a failure");
+  EXPECT_EQ(some.look(2).look, "DEAD");
 }
 
 TEST(Overview, GivesAComponentWithoutARuleNoHealth) {
@@ -73,6 +91,8 @@ TEST(Overview, GivesAComponentWithoutARuleNoHealth) {
   some.robot.discover();
   some.run(30s);
   EXPECT_EQ(some.look(2).look, "UNWATCHED");
+  EXPECT_EQ(some.overview().look, "OK") << transcript(some.robot);
+  EXPECT_EQ(some.overview().headline, "all is well");
   EXPECT_EQ(some.overview().detail, "no failure is seen by 2 rules");
 }
 
@@ -144,6 +164,7 @@ TEST(Overview, SaysWhoseSimulatedTimeStandsStill) {
   Overlooked some;
   some.robot.add("camera", {}, "/rgb");
   some.robot.add("lamp");
+  some.robot.add("lidar");
   some.robot.discover();
   some.run(10s);
   some.robot.tell(TimeHeld{ComponentId(0), true});
@@ -164,6 +185,7 @@ TEST(Overview, CallsNoComponentIllBecauseAStrategyIsUnderWayWithoutAFailure) {
   Overlooked some;
   some.robot.add("camera", {}, "/rgb");
   some.robot.add("lamp").parameters["on"] = Value(std::int64_t{0});
+  some.robot.add("lidar");
   some.robot.discover();
   some.run(30s);
   some.robot.order({1, "ada", "", RunStrategy{StrategyId(1)}});

@@ -11,6 +11,7 @@ import { type Incident, listed } from './incidents'
 import { usePaced } from './paced'
 import { signalOf, toAddress } from './plotted'
 import { isIll, kLooks, type Look, rankOf } from './looks'
+import { capital } from './status'
 import { blindRules, can, clockAt, conditionAt, culprits, graph, isLive, live, looks, now, robot, selected, state, verdict } from './store'
 import type { Candidate, Criticality, Evidence, ManagerEvent } from './types'
 
@@ -422,7 +423,7 @@ function BlindRules() {
   )
 }
 
-const sentence = (text: string) => text.charAt(0).toUpperCase() + text.slice(1) + (/[.?!]$/.test(text) ? '' : '.')
+const sentence = (text: string) => capital(text) + (/[.?!]$/.test(text) ? '' : '.')
 
 // Only events are known about another moment, and no alarm is not health.
 function NoFailureThen({ view }: { view: View }) {

@@ -32,7 +32,7 @@ export const kLooks: Record<Look, Appearance> = {
   MISSING: { sign: '◇', word: 'Missing', tone: 'ERROR' },
   UNREACHABLE: { sign: '⚠', word: 'Unreachable', tone: 'WARNING' },
   DEAD: { sign: '✕', word: 'Down', tone: 'WARNING' },
-  HUNG: { sign: '✕', word: 'Hangs', tone: 'WARNING' },
+  HUNG: { sign: '✕', word: 'Hung', tone: 'WARNING' },
   STOPPED: { sign: '✕', word: 'Stopped', tone: 'WARNING' },
   WARNING: { sign: '▲', word: 'Warning', tone: 'WARNING' },
   DEAF: { sign: '?', word: 'Unknown', tone: 'unknown' },

@@ -44,7 +44,11 @@ export const sinceOf = (incident: Incident) => clockAt(incident.since)
 type Told = Omit<Status, 'modes'>
 const told = (tone: Tone, sign: string, word: string, headline: string, detail: string): Told => ({ tone, sign, word, headline, detail })
 
-const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1)
+// A sentence begins with a capital letter; a component keeps its name.
+export function capital(text: string): string {
+  const first = text.split(/[ ,]/, 1)[0]
+  return robot.value?.components.some(({ name }) => name === first) ? text : text.charAt(0).toUpperCase() + text.slice(1)
+}
 
 // culprit decides how the robot is; here it is only put into words with a clock.
 function ofRobot(): Told {

@@ -163,9 +163,9 @@ export const kHeld = { events: [], control: {}, state: { held: { camera: held, d
 
 // No rule reads what this component does, and it was never seen: no failure is seen, and the component is not well.
 const neverSeen = { health: 'OK', look: 'NEVER_SEEN', condition: 'never seen', present: false, alive: null, process: undefined, lifecycle: undefined }
-export const kNeverSeen = { events: [], control: {}, state: { held: { image_enhancement: neverSeen }, overview: { ...kWell, detail: `${kWell.detail}; one component was never seen` } },
+export const kNeverSeen = { events: [], control: {}, state: { held: { image_enhancement: neverSeen }, overview: { look: 'NEVER_SEEN', headline: 'image_enhancement was never seen', detail: 'no failure is seen; was it started, and is its NODE right?' } },
   graph: { ...kGraph, nodes: kGraph.nodes.map((each) => (each.component === 'image_enhancement' ? { ...each, present: false } : each)) },
-  cause: 'All is well', level: 'Well', mode: 'Acting', also: ['one component was never seen'] }
+  cause: 'image_enhancement was never seen', level: 'Never seen', mode: 'Acting', also: ['was it started'] }
 
 // Events forgotten long ago: the failure itself is not.
 export const kForgotten = { events: [], control: {}, state: { RGBDead: failing, incidents: [{ ...kCause, headline: 'RGBDead fails', components: [], certain: false, consequences: [], doing: 'nothing is done yet', next: '' }] }, cause: 'RGBDead fails', level: 'Error', mode: 'Acting' }
