@@ -60,9 +60,10 @@ void ComponentNotes::took_too_long(const Pursuit& pursuit, Time now) {
   components_.note_coming_up(pursuit.component(), how, now, events_);
 }
 
-// A node may not report a transition before it is over.
+// A node may not report a transition before it is over. One that did not even tell its state is not known to begin one: it
+// counts as hung as soon as without the request.
 void ComponentNotes::sends(const Pursuit& pursuit, const Pursuit::Request& request, Time now) {
-  if (!std::holds_alternative<ChangeLifecycle>(request)) return;
+  if (!std::holds_alternative<ChangeLifecycle>(request) || !pursuit.before()) return;
   ComponentState& state = components_[pursuit.component()];
   state.transition_patience = std::get<LifecycleGoal>(pursuit.goal()).patience;
   state.changes_until = later(now, state.transition_patience);
