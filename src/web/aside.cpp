@@ -41,7 +41,7 @@ Answer FewAtOnce::make(const std::function<Answer()>& answer) {
   std::exception_ptr failure;
   try {
     std::thread thread([&] {
-      // Of this thread alone. Not the lowest: others may wait for a lock that it holds.
+      // The priority of this thread alone, and not the lowest: others may wait for a lock that it holds.
       setpriority(PRIO_PROCESS, 0, kLowered);
       try {
         made = answer();

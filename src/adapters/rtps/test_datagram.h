@@ -29,7 +29,7 @@ class TestDatagram {
                     std::uint32_t bits = 0) {
     return begin(0x08).readers().entity(writer).sequence(first).sequence(base).u32(bits).end();
   }
-  // Of all before `base`, with a bitmap of so many bits, which is not there.
+  // It acknowledges all before `base`, and announces a bitmap of so many bits, which is not there.
   TestDatagram& acknowledgement(const Guid& reader, const Guid& writer, std::int64_t base,
                                 std::uint32_t bits = 0) {
     return begin(0x06).entity(reader).entity(writer).sequence(base).u32(bits).u32(1).end();
