@@ -48,7 +48,7 @@ int import_foreign_rules(const ImportOptions& options, const Source& source) {
 int import_json(const ImportOptions& options, const Source& source) {
   const auto rules = rule_json::to_rules(source.name(), std::string(source.text()));
   if (!rules) {
-    fmt::print(stderr, "{}", rules.error());
+    fmt::print(stderr, "{}", escape_lines(rules.error()));
     return fail(source.name() + " is not imported");
   }
   const auto written = write_text(options.output, *rules);

@@ -60,6 +60,14 @@ TEST_F(ImportCommand, ShowsNoTextThatSteersATerminal) {
               testing::HasSubstr("bad.txt:2:12: '\\x1b[2J' is no number"));
 }
 
+TEST_F(ImportCommand, ShowsNoNameOfAMemberThatSteersATerminal) {
+  std::ofstream(path("bad.json")) << R"({"version": 1, "statements": [], "a\u001b[2J": 1})";
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run({"import", path("bad.json")}), kFailed);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::HasSubstr("/a\\x1b[2J: there is no such member"));
+}
+
 TEST_F(ImportCommand, FailsWithAReason) {
   std::ofstream(path("bad.txt")) << "BEGIN CONSTS\n  double x ten\n";
   testing::internal::CaptureStderr();

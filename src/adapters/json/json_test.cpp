@@ -20,6 +20,19 @@ TEST(Json, IsDiscardedWhereItIsNone) {
   EXPECT_TRUE(parse_json(std::string(100'000, '[')).is_discarded());
 }
 
+TEST(Json, IsDiscardedWhereItIsDeeperThanTheStackBears) {
+  const auto nested = [](int depth) {
+    std::string text;
+    for (int i = 0; i < depth; ++i) text += i % 2 == 0 ? "[" : "{\"]\\\"\": ";
+    for (int i = depth; i-- > 0;) text += i % 2 == 0 ? "]" : "}";
+    return text;
+  };
+  EXPECT_FALSE(parse_json("[[], " + nested(499) + "]").is_discarded());
+  EXPECT_TRUE(parse_json("[[], " + nested(501) + "]").is_discarded());
+  EXPECT_TRUE(parse_json(std::string(1'000'000, '[') + std::string(1'000'000, ']')).is_discarded());
+  EXPECT_FALSE(parse_json('"' + std::string(1'000'000, '[') + '"').is_discarded()) << "a text";
+}
+
 TEST(Json, IsWrittenWhereATextIsNoUtf8) {
   EXPECT_EQ(to_line({{"name", "caf\xE9"}}), "{\"name\":\"caf\xEF\xBF\xBD\"}");
   EXPECT_EQ(to_indented(Json("caf\xE9")), "\"caf\xEF\xBF\xBD\"");

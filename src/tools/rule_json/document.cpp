@@ -10,6 +10,7 @@ namespace culprit::rule_json {
 namespace {
 
 constexpr std::size_t kMaxMembers = 64;
+constexpr int kDeepest = 100;
 
 // Reads a text and keeps only its mistakes.
 class Inspector : public nlohmann::json_sax<Json> {
@@ -25,15 +26,19 @@ class Inspector : public nlohmann::json_sax<Json> {
   bool number_float(number_float_t, const string_t&) override { return true; }
   bool string(string_t&) override { return true; }
   bool binary(binary_t&) override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
+  bool start_array(std::size_t) override { return goes_deeper(); }
+  bool end_array() override {
+    --depth_;
+    return true;
+  }
 
   bool start_object(std::size_t) override {
     open_.emplace_back();
-    return true;
+    return goes_deeper();
   }
   bool end_object() override {
     open_.pop_back();
+    --depth_;
     return true;
   }
   bool key(string_t& name) override {
@@ -52,6 +57,13 @@ class Inspector : public nlohmann::json_sax<Json> {
   }
 
  private:
+  bool goes_deeper() {
+    if (++depth_ > kDeepest)
+      complaint_ = "this is no JSON of rules: it is nested deeper than any statement";
+    return complaint_.empty();
+  }
+
+  int depth_ = 0;
   std::vector<std::set<std::string>> open_;  // names of the members so far, of each open object
   std::string complaint_;
   std::size_t offset_ = 0;

@@ -50,6 +50,9 @@ TEST(FromJson, SaysWhereItIsNoJson) {
               HasSubstr("this is no JSON"));
   EXPECT_THAT(complaints_about("\"\xff\""), HasSubstr("this is no JSON"));
   EXPECT_THAT(complaints_about(std::string(100'000, '[')), HasSubstr("this is no JSON"));
+  EXPECT_THAT(complaints_about("{\"version\": " + std::string(1'000'000, '[') +
+                               std::string(1'000'000, ']') + ", \"statements\": []}"),
+              HasSubstr("it is nested deeper than any statement"));
 }
 
 TEST(FromJson, SaysWhatADocumentIs) {
