@@ -185,6 +185,7 @@ void Units::look_at_all() {
 void Units::look_at(ComponentId component, const UnitState& state) {
   if (!state.is_loaded) return;
   if (barred_.erase(component) > 0) inbox_.put(StartBarred{component, ""});
+  if (state.is_over() && state.has_job) return;  // systemctl restart is half-way
   note_main_process(component, state);
   const auto before = before_.find(component);
   const bool is_first = before == before_.end();

@@ -254,6 +254,22 @@ TEST_F(UnitsOnAStandInForSystemd, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
   }
 }
 
+// As systemctl restart leaves it between its two halves.
+TEST_F(UnitsOnAStandInForSystemd, ThatSystemdIsAboutToStartAreNotToldToHaveEnded) {
+  running();
+  std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // Units has noticed that it runs
+  systemd.say("inactive", 0, true);
+  std::vector<Observation> seen;
+  for (const Time end = later(live_now(), 2 * Units::kIdlePeriod); live_now() < end;)
+    inbox.take(end, seen);
+  EXPECT_TRUE(seen.empty());
+  systemd.say("inactive", 0);
+  const auto ended = wait_for<ProcessSeen>(
+      [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->cause, Cause::kOrder);
+}
+
 // Somebody may have stopped it on purpose.
 TEST_F(UnitsOnAStandInForSystemd, ThatWereInactiveFromTheBeginningProveNothing) {
   EXPECT_EQ(stop(0).outcome, Outcome::kDone);

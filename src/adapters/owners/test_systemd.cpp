@@ -151,7 +151,9 @@ struct TestSystemdMethods {
     const TestUnit& unit = found == self.units_.end() ? none : found->second;
     if (what == "LoadState")
       return sd_bus_message_append(reply, "s", found == self.units_.end() ? "not-found" : "loaded");
-    if (what == "Job") return sd_bus_message_append(reply, "(uo)", 0u, "/");
+    if (what == "Job")
+      return sd_bus_message_append(reply, "(uo)", self.said_job_ ? 1u : 0u,
+                                   self.said_job_ ? "/org/freedesktop/systemd1/job/1" : "/");
     if (what == "Result") return sd_bus_message_append(reply, "s", unit.result.c_str());
     if (what == "ExecMainPID")
       return sd_bus_message_append(reply, "u", static_cast<std::uint32_t>(unit.last_pid));
@@ -291,10 +293,11 @@ void TestSystemd::refuse(const std::string& error) {
   refusal_ = error;
 }
 
-void TestSystemd::say(const std::string& active, std::uint32_t main_pid) {
+void TestSystemd::say(const std::string& active, std::uint32_t main_pid, bool has_job) {
   const MutexLock lock(mutex_);
   said_active_ = active;
   said_pid_ = main_pid;
+  said_job_ = has_job;
 }
 
 // ---- systemd itself

@@ -56,7 +56,7 @@ class TestSystemd {
   // Every request is refused with this D-Bus error; empty: none.
   void refuse(const std::string& error);
   // The state that it reports for all units in place of the truth; empty: the truth.
-  void say(const std::string& active, std::uint32_t main_pid);
+  void say(const std::string& active, std::uint32_t main_pid, bool has_job = false);
 
  private:
   friend struct TestSystemdMethods;
@@ -71,6 +71,7 @@ class TestSystemd {
   std::string refusal_ CULPRIT_GUARDED_BY(mutex_);
   std::string said_active_ CULPRIT_GUARDED_BY(mutex_);
   std::uint32_t said_pid_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  bool said_job_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::vector<std::string> to_start_
       CULPRIT_GUARDED_BY(mutex_);  // RestartUnit: once the old one has ended
   struct sd_bus* bus_ = nullptr;
