@@ -231,6 +231,7 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
     if (state.main_pid == 0) return no_form(what);
     state.activity = Activity::kActive;
     last_pids_[container] = state.main_pid;
+    told_to_stop_.erase(container);
   } else if (*status == "restarting" || *status == "initialized") {
     state.activity = Activity::kActivating;
   } else if (*status == "removing" || *status == "stopping") {
@@ -245,7 +246,11 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
         *code == 0 || std::find(kBySignal.begin(), kBySignal.end(), *code) != kBySignal.end();
     state.main_pid = 0;
     state.activity = is_out_of_memory || !may_be_wanted ? Activity::kFailed : Activity::kInactive;
-    state.is_orderly = state.activity == Activity::kInactive && *code != kKilled;
+    // A stop kills what has not ended after its grace.
+    if (*code == kKilled && !told_to_stop_.contains(container))
+      told_to_stop_[container] = was_told_to_stop(container);
+    state.is_orderly =
+        state.activity == Activity::kInactive && (*code != kKilled || told_to_stop_[container]);
     state.result = is_out_of_memory ? "out of memory" : "exit code " + std::to_string(*code);
   } else {
     return Error{name() + " says that " + container + " is '" + one_line(*status) +
@@ -254,6 +259,24 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
   const auto last = last_pids_.find(container);
   state.last_main_pid = last == last_pids_.end() ? 0 : last->second;
   return state;
+}
+
+// The engine keeps its last events. It sends one for a stop, once the container has ended, and none for a kill.
+bool Engine::was_told_to_stop(const std::string& container) {
+  constexpr std::int64_t kMomentAgo = 30;  // seconds
+  constexpr std::int64_t kNanoseconds = 1'000'000'000;
+  const std::int64_t now = wall_now();
+  std::string part = std::to_string(now % kNanoseconds);
+  part.insert(0, 9 - part.size(), '0');
+  const auto answer = ask("GET",
+                          "/events?since=" + std::to_string(now / kNanoseconds - kMomentAgo) +
+                              "&until=" + std::to_string(now / kNanoseconds) + "." + part +
+                              "&filters=%7B%22container%22:%5B%22" + container +
+                              "%22%5D,%22event%22:%5B%22stop%22%5D%7D",
+                          kPatience);
+  if (!answer || answer->status != 200) return false;
+  const Json first = parse_json(answer->body.substr(0, answer->body.find('\n')));
+  return member<std::string>(first, "Action") == "stop";
 }
 
 Expected<void> Engine::change(const std::string& container, const std::string& what,

@@ -52,6 +52,8 @@ class Engine : public ServiceOwner {
   Expected<Answer> ask(const std::string& method, const std::string& target, Duration patience);
   // Asks for a change. A change that is not answered in time may happen all the same.
   Expected<void> change(const std::string& container, const std::string& what, Duration patience);
+  // Whether it was told to stop a moment ago (docker stop), and not killed.
+  bool was_told_to_stop(const std::string& container);
   Error no_form(const std::string& what) const;
 
   // Its program: the name that people know.
@@ -60,7 +62,8 @@ class Engine : public ServiceOwner {
   const EngineContainer::Engine which_;
   const std::string host_;
   bool was_reached_ = false;
-  std::map<std::string, int> last_pids_;  // the engine forgets them
+  std::map<std::string, int> last_pids_;      // the engine forgets them
+  std::map<std::string, bool> told_to_stop_;  // those that were killed, until they run again
 };
 
 }  // namespace culprit::owners

@@ -119,6 +119,18 @@ TEST_F(ContainersOnAStandInForDocker, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
   }
 }
 
+// It did not end within the grace of docker stop.
+TEST_F(ContainersOnAStandInForDocker, ThatAStopHadToKillAreToldAsAnOrder) {
+  engine.start("slam");
+  for (const int looks = engine.looks(); engine.looks() < looks + 2;)
+    std::this_thread::sleep_for(1ms);
+  engine.add("slam", {.status = "exited", .code = 137, .was_told_to_stop = true});
+  const auto seen = wait_for<ProcessSeen>(
+      [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->cause, Cause::kOrder);
+}
+
 // Signals are how somebody stops it on purpose, too.
 TEST_F(ContainersOnAStandInForDocker, ThatHadExitedBeforeAnybodyLookedAreDeadIfTheyFailed) {
   for (const int code : {0, 137, 1}) {

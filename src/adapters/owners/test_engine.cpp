@@ -165,6 +165,16 @@ std::string TestEngine::look_at(const std::string& name) {
 
 std::string TestEngine::answer_to(const std::string& method, const std::string& target) {
   if (!answer_.empty()) return answer_;
+  if (target.starts_with("/events?") &&
+      target.find("%22event%22:%5B%22stop%22%5D") != target.npos) {
+    for (const auto& [name, container] : containers_) {
+      const bool is_asked_for =
+          target.find("%22container%22:%5B%22" + name + "%22%5D") != target.npos;
+      if (is_asked_for && container.was_told_to_stop)
+        return http(200, to_line({{"status", "stop"}, {"Type", "container"}, {"Action", "stop"}}));
+    }
+    return http(200, "");
+  }
   constexpr std::string_view kContainers = "/containers/";
   if (!target.starts_with(kContainers)) return http(404, R"({"message":"page not found"})");
   if (target == "/containers/json?all=1") {

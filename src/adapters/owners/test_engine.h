@@ -21,6 +21,7 @@ struct TestContainer {
   std::string status = "created";
   int pid = 0;
   int code = 0;
+  bool was_told_to_stop = false;  // as `docker stop` does, and `docker kill` does not
   std::vector<std::string> command{"sleep", "300"};
 };
 
