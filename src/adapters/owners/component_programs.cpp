@@ -1,5 +1,6 @@
 #include "owners/component_programs.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -45,7 +46,10 @@ Expected<FileDescriptor> ComponentPrograms::lock_start(ComponentId component) co
   const std::string& name = rules[component].name;
   std::error_code error;
   std::filesystem::create_directories(log_folder, error);
-  const std::filesystem::path path = log_folder / (name + ".start");
+  // Robots of one machine may share the folder.
+  std::string file = robot.empty() ? name : mark(component);
+  std::ranges::replace(file, '/', '-');
+  const std::filesystem::path path = log_folder / (file + ".start");
   FileDescriptor lock(
       open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0600));
   if (!lock)

@@ -30,7 +30,7 @@ struct ComponentPrograms {
   // `launcher`: the launcher whose process it stands in for; 0: none.
   Program program(ComponentId component, int launcher) const;
 
-  // From the decision to start until the program runs, and carries the mark, no other culprit may start it. The kernel
+  // From the decision to start until the program runs, and carries the mark, no other culprit of the robot may start it. The kernel
   // releases the lock when the last process that holds it has ended or runs the program. Errors: for people.
   Expected<FileDescriptor> lock_start(ComponentId component) const;
 };

@@ -1356,6 +1356,17 @@ TEST(Supervisor, StartsNothingWhileAnotherCulpritStartsIt) {
 }
 
 // A reader of the log, for example an older culprit, may lock it for as long as it likes.
+TEST(Supervisor, RobotsThatShareAFolderDoNotWaitForOneAnothersStarts) {
+  Supervised one("sleep 1000", "0/alpha");
+  std::filesystem::create_directories(one.folder());
+  const int lock =
+      open((one.folder() / "0-beta-c.start").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_EQ(flock(lock, LOCK_EX), 0);
+  EXPECT_NE(one.start(), 0);
+  EXPECT_TRUE(std::filesystem::exists(one.folder() / "0-alpha-c.start"));
+  close(lock);
+}
+
 TEST(Supervisor, WaitsForNoLockOfAReaderOfItsLog) {
   Supervised c("sleep 1000");
   std::filesystem::create_directories(c.folder());
