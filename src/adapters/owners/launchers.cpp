@@ -104,10 +104,11 @@ bool Launchers::ran_in_foreground(ComponentId component, int pid) const {
          launcher->second.is_in_foreground;
 }
 
-bool Launchers::is_stopped(ComponentId component) const {
+bool Launchers::is_stopped_with(ComponentId component, int pid) const {
   const auto launcher = launchers_.find(component);
-  return launcher != launchers_.end() && launcher->second.held &&
-         state_letter(launcher->second.pid) == 'T';
+  if (launcher == launchers_.end() || !launcher->second.held) return false;
+  const int its_launcher = launcher->second.pid;
+  return state_letter(its_launcher) == 'T' || is_stopped_job(pid, its_launcher);
 }
 
 void Launchers::add_to(std::vector<pollfd>& watched) const {

@@ -39,8 +39,9 @@ class Launchers {
   // Whether its process `pid`, which culprit did not start, ran as a job in the foreground of a terminal when it was looked
   // last. If such a job ends in an orderly way, a person ended it: the shell goes on.
   bool ran_in_foreground(ComponentId component, int pid) const;
-  // By SIGSTOP.
-  bool is_stopped(ComponentId component) const;
+  // Whether the component's process `pid` is stopped together with its launcher, or with all of its job in a terminal
+  // (is_stopped_job()): a person did that.
+  bool is_stopped_with(ComponentId component, int pid) const;
 
   // Looks which children they have.
   void look_at_children();

@@ -43,6 +43,10 @@ ProcessStat family_of(int pid) {
   return process_stat(std::to_string(pid)).value_or(ProcessStat{.state = 'X'});
 }
 
+bool is_job_of(const ProcessStat& job, const ProcessStat& shell) {
+  return job.terminal != 0 && job.session == shell.session && job.group != shell.group;
+}
+
 std::vector<std::string> arguments_of(int pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline", std::ios::binary);
   std::vector<std::string> arguments;
@@ -202,9 +206,18 @@ Origin origin_of(int pid) {
 std::optional<bool> is_foreground_job(int pid, int shell) {
   const ProcessStat job = family_of(pid);
   if (job.state == 'X' || job.state == 'Z' || job.is_exiting) return std::nullopt;
-  const ProcessStat its_shell = family_of(shell);
-  const bool is_in_foreground = job.terminal != 0 && job.group == job.foreground;
-  return is_in_foreground && job.session == its_shell.session && job.group != its_shell.group;
+  const bool is_in_foreground = job.group == job.foreground;
+  return is_in_foreground && is_job_of(job, family_of(shell));
+}
+
+bool is_stopped_job(int pid, int shell) {
+  const ProcessStat job = family_of(pid);
+  if (!is_job_of(job, family_of(shell))) return false;
+  return std::ranges::none_of(all_processes(), [&](int each) {
+    const ProcessStat family = family_of(each);
+    const bool is_its = family.group == job.group && family.session == job.session;
+    return is_its && family.state != 'T' && family.state != 'Z';
+  });
 }
 
 std::optional<SystemdUnit> unit_started_as(int pid) {

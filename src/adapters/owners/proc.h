@@ -44,6 +44,10 @@ Origin origin_of(int pid);
 // foreground.
 std::optional<bool> is_foreground_job(int pid, int shell);
 
+// Whether the shell `shell` runs it as a job, in the foreground or not, all of which is stopped, as by Ctrl-Z. Not so if
+// only one process of the job is (kill -STOP).
+bool is_stopped_job(int pid, int shell);
+
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);
 

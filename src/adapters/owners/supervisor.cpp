@@ -278,9 +278,10 @@ bool Supervisor::is_gone(ComponentId component) const {
                       [&](const Member& m) { return m.component == component; });
 }
 
-// Ctrl-Z stops the processes that were started together, and their launcher.
+// Ctrl-Z stops the processes that were started together, and their launcher unless that is a shell.
 Cause Supervisor::cause_of_stop(const Member& member) const {
-  return launchers_.is_stopped(member.component) ? Cause::kWish : Cause::kFault;
+  const bool is_of_person = launchers_.is_stopped_with(member.component, member.process.pid());
+  return is_of_person ? Cause::kWish : Cause::kFault;
 }
 
 // ---- the thread

@@ -405,6 +405,7 @@ class Terminal {
     if (job == 0) {
       setpgid(0, 0);
       signal(SIGINT, SIG_DFL);  // a test in the background inherits that it is ignored
+      signal(SIGTSTP, SIG_DFL);
       signal(SIGTTOU, SIG_IGN);
       if (in_foreground) tcsetpgrp(STDIN_FILENO, getpid());
       execlp("sleep", "sleep", "1000", nullptr);
@@ -425,6 +426,7 @@ class Terminal {
     return job_;
   }
   void press_ctrl_c() const { EXPECT_EQ(write(keyboard_, "\x03", 1), 1); }
+  void press_ctrl_z() const { EXPECT_EQ(write(keyboard_, "\x1a", 1), 1); }
 
  private:
   int keyboard_ = -1;
@@ -456,6 +458,19 @@ TEST(Supervisor, AJobThatCrashesOrRunsInTheBackgroundWasNotEndedByCtrlC) {
     const ProcessSeen ended = c.state(ProcessState::kGone);
     EXPECT_EQ(ended.cause, in_foreground ? Cause::kFault : Cause::kWish) << ended.remark;
   }
+}
+
+TEST(Supervisor, CtrlZInTheTerminalOfANodeIsAPersonsWish) {
+  Terminal terminal(true);
+  if (!terminal.is_open()) GTEST_SKIP() << "this system has no terminals";
+  Supervised c("sleep 1000");
+  const int job = terminal.job();
+  c.supervisor->adopt(ComponentId(0), job, live_now());
+  EXPECT_FALSE(c.launcher().has_ended);
+  terminal.press_ctrl_z();
+  EXPECT_EQ(c.state(ProcessState::kStopped).cause, Cause::kWish);
+  kill(job, SIGCONT);
+  EXPECT_EQ(c.state(ProcessState::kRunning).pid, job);
 }
 
 // A process that culprit starts while the launcher runs stands in for the launch, and its mark says

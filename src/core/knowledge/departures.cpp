@@ -155,6 +155,13 @@ void Departures::is_up(ComponentId component) {
   if (member.down == StaysDown::Why::kShutDown) member.down.reset();
 }
 
+void Departures::goes_on(ComponentId component, Time at) {
+  Member& member = members_[component.index];
+  if (member.down != StaysDown::Why::kStopped) return;
+  member.down.reset();
+  member.back = at;
+}
+
 // ---- what people order
 
 void Departures::revive(std::optional<ComponentId> component) {

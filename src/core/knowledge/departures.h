@@ -10,7 +10,8 @@
 //                                      starts one again, or orders so (Revive). One that runs on for
 //                                      kTogether, crashes later than kDoubt, or that culprit ends, is
 //                                      of no launch from then on
-//   a person started it again          it has kBack to come up
+//   a person started it again, or      it has kBack to come up
+//   continued its stopped process
 //
 // A launch that lived on for kDoubt after a crash was ended by a person. One that ends sooner may have
 // ended because of the crash (on_exit=Shutdown() in a launch file): that is in doubt. These are not the
@@ -61,10 +62,12 @@ class Departures {
   void ended_here(ComponentId component, Time at);
   // It is gone for an unknown reason.
   void lost(ComponentId component);
-  // A person had its owner stop it (systemctl stop, docker stop), or shut its node down.
+  // A person had its owner end it (systemctl stop, docker stop), shut its node down, or stopped its process.
   void ended_by_order(ComponentId component, StaysDown::Why why);
   // Its node is not shut down any more.
   void is_up(ComponentId component);
+  // Its process runs: if a person had stopped it, it goes on.
+  void goes_on(ComponentId component, Time at);
 
   // ---- orders
 

@@ -222,6 +222,10 @@ class Describer {
         return down + "its owner ended it in an orderly way, as on a person's order" + remedy;
       case StaysDown::Why::kShutDown:
         return down + "its node was shut down" + remedy;
+      case StaysDown::Why::kStopped:
+        return down + "a person stopped " + (is_one ? "it" : "them") +
+               " in a terminal (Ctrl-Z); continue there (fg), or let culprit replace " +
+               (is_one ? "it" : "them") + ": culprit revive";
       case StaysDown::Why::kOrder:
         return down + "a person ended the processes that culprit had started" + remedy;
     }
@@ -443,6 +447,8 @@ std::string describe(const Departures::Departure& departure, const std::string& 
       return "the owner of " + component + " ended it in an orderly way, as on a person's order";
     case StaysDown::Why::kShutDown:
       return "the node of " + component + " was shut down";
+    case StaysDown::Why::kStopped:
+      return "a person stopped " + component + " in a terminal (Ctrl-Z)";
     case StaysDown::Why::kOrder:
       return "a person ended " + component + ", which culprit had started";
   }

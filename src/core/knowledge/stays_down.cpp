@@ -14,6 +14,8 @@ std::string_view to_string(StaysDown::Why why) {
       return "owner";
     case StaysDown::Why::kShutDown:
       return "shut_down";
+    case StaysDown::Why::kStopped:
+      return "stopped";
     case StaysDown::Why::kOrder:
       return "order";
   }
@@ -22,7 +24,8 @@ std::string_view to_string(StaysDown::Why why) {
 
 std::optional<StaysDown::Why> reason_named(std::string_view name) {
   using enum StaysDown::Why;
-  for (const StaysDown::Why each : {kPerson, kDoubt, kUnseen, kOwner, kShutDown, kOrder}) {
+  for (const StaysDown::Why each :
+       {kPerson, kDoubt, kUnseen, kOwner, kShutDown, kStopped, kOrder}) {
     if (to_string(each) == name) return each;
   }
   return std::nullopt;

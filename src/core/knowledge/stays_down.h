@@ -1,4 +1,4 @@
-// Components that ended by a person's wish, or may have, and are not started again by culprit itself.
+// Components that ended or were stopped by a person's wish, or may have, and are not started again by culprit itself.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,7 @@ struct StaysDown {
     kUnseen,    // it ended with all others while culprit did not run
     kOwner,     // its owner was told to end it (systemctl stop, docker stop)
     kShutDown,  // its node was shut down (ros2 lifecycle set … shutdown)
+    kStopped,   // a person stopped its process in its terminal (Ctrl-Z)
     kOrder      // a person ordered culprit to end what it had started
   };
   std::vector<ComponentId> components;
@@ -27,7 +28,7 @@ struct StaysDown {
   Duration after{};                   // kDoubt: so long before the launch began to end
 };
 
-// "person", "doubt", "unseen", "owner", "shut_down", "order"
+// "person", "doubt", "unseen", "owner", "shut_down", "stopped", "order"
 std::string_view to_string(StaysDown::Why why);
 std::optional<StaysDown::Why> reason_named(std::string_view name);
 

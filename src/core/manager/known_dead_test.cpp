@@ -421,6 +421,31 @@ RULE CameraInactive
   }
 }
 
+// Ctrl-Z in its terminal, and later fg.
+TEST(AStop, ByAPersonIsNotUndone) {
+  for (const Cause cause : {Cause::kWish, Cause::kFault}) {
+    TestRobot robot = robot_with(kPatientRules);
+    robot["camera"].process = ProcessState::kStopped;
+    robot.tell(
+        ProcessSeen{robot.id("camera"), ProcessState::kStopped, robot["camera"].pid, "", cause});
+    robot.run_for(1min);
+    const bool is_of_person = cause == Cause::kWish;
+    EXPECT_EQ(robot.was_asked(" process"), !is_of_person) << transcript(robot);
+    EXPECT_EQ(robot.count("camera stays down: a person stopped it in a terminal"),
+              is_of_person ? 1u : 0u)
+        << transcript(robot);
+    if (!is_of_person) continue;
+    robot["camera"].process = ProcessState::kRunning;
+    robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kRunning, robot["camera"].pid, ""});
+    robot.run_for(15s);
+    EXPECT_FALSE(robot.was_asked(" process")) << transcript(robot);
+    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+    robot.kill("camera");
+    robot.run_for(5s);
+    EXPECT_TRUE(robot.was_asked("camera: start process")) << transcript(robot);
+  }
+}
+
 // ---- what holds for all rules and all deaths
 
 const std::vector<std::string> kTriggers = {"age(/a) > 400ms",

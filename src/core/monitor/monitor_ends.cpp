@@ -74,8 +74,11 @@ void Monitor::settle_departures(Time now) {
 void Monitor::note_process(const ProcessSeen& seen, Time at) {
   switch (seen.state) {
     case ProcessState::kRunning:
+      write_.departures.goes_on(seen.component, at);
       return note_no_longer_dead(seen.component);
     case ProcessState::kStopped:
+      if (seen.cause == Cause::kWish)
+        write_.departures.ended_by_order(seen.component, StaysDown::Why::kStopped);
       if (seen.cause == Cause::kFault && knowledge_.components[seen.component].in_graph)
         note_known_dead(seen.component, at);
       return;

@@ -108,10 +108,10 @@ enum class ProcessState : std::uint8_t {
 // Whether a process ended or was stopped on purpose, as far as the operating system reports.
 enum class Cause : std::uint8_t {
   kUnknown,
-  kFault,  // a signal that is no usual request to end, or another exit code than 0; it was stopped,
-           // and the program that started it was not
+  kFault,  // a signal that is no usual request to end, or another exit code than 0; it was stopped
+           // alone
   kWish,   // exit code 0, SIGINT, SIGTERM or SIGHUP; culprit ended it; it was stopped with its
-           // launcher
+           // launcher, or with all of its job in a terminal
   kOrder   // its owner ended it in an orderly way, as systemctl stop and docker stop do, and
            // Ctrl-C in the terminal of its shell
 };
