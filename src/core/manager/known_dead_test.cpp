@@ -402,6 +402,20 @@ TEST(AnOwner, ThatWasToldToEndItsProcessIsNotToldToStartItAgain) {
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
 }
 
+// It hangs, culprit has begun to replace it, and a person presses Ctrl-C in its terminal.
+TEST(AnOwner, ThatEndsAProcessBeforeCulpritDoesIsNotToldToStartItAgain) {
+  TestRobot robot = robot_with(kPatientRules);
+  robot["camera"].fault = "redeploy";
+  robot["camera"].ends_only_if_killed = true;
+  for (int i = 0; i < 300 && !robot.was_asked("camera: stop process"); ++i) robot.run_for(100ms);
+  ASSERT_TRUE(robot.was_asked("camera: stop process")) << transcript(robot);
+  end(robot, "camera", "killed by signal 2", Cause::kOrder);
+  robot.run_for(1min);
+  EXPECT_FALSE(robot.was_asked("camera: start process")) << transcript(robot);
+  EXPECT_EQ(robot.count("camera stays down: its owner ended it in an orderly way"), 1u)
+      << transcript(robot);
+}
+
 TEST(AShutdown, OfANodeIsNotUndone) {
   const std::string rules = std::string(kPatientRules) + R"(
 RULE CameraInactive

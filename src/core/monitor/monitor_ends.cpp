@@ -97,11 +97,11 @@ void Monitor::note_end(const ProcessSeen& seen, Time at) {
   const ComponentId component = seen.component;
   const bool has_said_good_bye = !knowledge_.components[component].in_graph;
   note_no_longer_dead(component);
-  if (is_ended_here(component, knowledge_)) {
-    write_.departures.ended_here(component, at);
-  } else if (seen.cause == Cause::kOrder) {
+  if (seen.cause == Cause::kOrder) {  // also if culprit was about to end it
     write_.departures.left(component, at);
     write_.departures.ended_by_order(component, StaysDown::Why::kOwner);
+  } else if (is_ended_here(component, knowledge_)) {
+    write_.departures.ended_here(component, at);
   } else if (has_said_good_bye) {
     write_.departures.lost(component);
   } else if (seen.cause == Cause::kWish) {
