@@ -266,6 +266,10 @@ void ComponentLink::ask_time_source(std::function<void(bool)> then) {
                });
 }
 
+void ComponentLink::ask_time_source_again() {
+  if (then_of_time_) ask_time_source(then_of_time_);
+}
+
 // One that answered once, and ceases to, hangs.
 void ComponentLink::note_that_it_answers() {
   const auto note = [this](const CallResult& result) {

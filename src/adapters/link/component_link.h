@@ -83,6 +83,9 @@ class ComponentLink {
   // thread. On the executor's thread.
   void ask_time_source(std::function<void(bool is_simulated)> then);
 
+  // The same again, if it was asked before: it may be another one now (ros2 param set).
+  void ask_time_source_again();
+
   // Asks again what the node was asked when it was discovered, and has not answered: while it loads (a model, slow
   // imports), it may answer nothing. For Asking::kMost times after that. On the executor's thread.
   void ask_again();

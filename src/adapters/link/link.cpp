@@ -9,6 +9,7 @@
 #include "base/live_clock.h"
 #include "base/tool_names.h"
 #include "link/named_process.h"
+#include "link/simulated_clock.h"
 #include "ros2/helper_options.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
@@ -280,6 +281,7 @@ void Link::on_change(const GraphChange& change) {
   } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
     on_endpoint(endpoint->node, endpoint->endpoint);
   } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
+    if (gone->kind == EndpointKind::kSubscriber) on_subscription(gone->node, gone->name);
     if (is_service(gone->kind) && is_for_management(gone->name)) return;
     inbox_.put(EndpointVanished{gone->node, gone->kind, gone->name});
   } else if (const auto* namesakes = std::get_if<NodeNamesakes>(&change)) {
@@ -424,12 +426,21 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
     }
     if (endpoint.type == srv::ChangeMode::kType) on_system(node, endpoint);
   }
+  if (endpoint.kind == EndpointKind::kSubscriber) on_subscription(node, endpoint.name);
   if (endpoint.kind == EndpointKind::kPublisher) {
     const auto watch = watches_.find(endpoint.name);
     if (watch != watches_.end()) find_type(node, endpoint, *watch->second);
   }
   if (is_service(endpoint.kind) && is_for_management(endpoint.name)) return;
   inbox_.put(EndpointAppeared{node, endpoint.kind, endpoint.name});
+}
+
+// A node subscribes to /clock while its use_sim_time is set.
+void Link::on_subscription(const std::string& node, const std::string& topic) {
+  if (topic != SimulatedClock::kTopic || !context_->graph().node(node)) return;
+  const auto component = binding_.find(node);
+  const bool is_main = component && !other_nodes_->has(*component, node);
+  if (ComponentLink* link = is_main ? link_of(*component) : nullptr) link->ask_time_source_again();
 }
 
 void Link::tell_writers(const std::string& topic) {

@@ -150,6 +150,7 @@ class Link {
   GuidPrefix participant_of(const std::string& node) const;
   void on_system(const std::string& manager, const GraphEndpoint& service);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
+  void on_subscription(const std::string& node, const std::string& topic);
   void tell_writers(const std::string& topic);
   void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
   void on_discovery(const DiscoveryEvent& event);

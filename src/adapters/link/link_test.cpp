@@ -27,6 +27,7 @@
 #include "ros2/live_test.h"
 #include "ros2/publisher.h"
 #include "ros2/services.h"
+#include "ros2/subscription.h"
 #include "ros2/test_forger.h"
 #include "ros2/timer.h"
 #include "rtps/newcomers.h"
@@ -1267,6 +1268,33 @@ TEST(Link, HoldsOnlyTheNodesThatUseSimulatedTimeBesideOthers) {
   }));
   clock.runs = true;
   EXPECT_TRUE(is_told(false));
+}
+
+// As after `ros2 param set /robot use_sim_time true`: a node then subscribes to /clock.
+TEST(Link, LearnsThatANodeUsesSimulatedTimeFromNowOn) {
+  const TestDomain domain;
+  Robot robot(domain);
+  ClockNode clock(robot);
+  Linked linked(domain, {}, "COMPONENT robot NODE /robot\nCOMPONENT simulator NODE /simulator\n");
+  ASSERT_TRUE(linked.sees("/robot"));
+  std::this_thread::sleep_for(2s);  // it has said that its time is the real one
+  clock.runs = false;
+  use_simulated_time(robot);
+  std::unique_ptr<RawSubscription> follows;
+  robot.context.run([&] {
+    auto made = RawSubscription::create(robot.managed->node().entry(), SimulatedClock::kTopic,
+                                        "rosgraph_msgs/msg/Clock", {}, PayloadUse::kWhole,
+                                        [](const Sample&) {});
+    ASSERT_TRUE(made);
+    follows = std::move(*made);
+  });
+  EXPECT_TRUE(linked.wait<TimeHeld>([&](const TimeHeld& t) { return t.is_held; }));
+  robot.context.run([&] {
+    const msg::Parameter real{"use_sim_time", to_parameter_value(Value(false))};
+    EXPECT_TRUE(robot.managed->node().parameters().set(std::array{real}).successful);
+    follows.reset();
+  });
+  EXPECT_TRUE(linked.wait<TimeHeld>([&](const TimeHeld& t) { return !t.is_held; }));
 }
 
 TEST(Link, SaysThatNodesWaitForAClockThatNobodyPublishes) {

@@ -1,7 +1,8 @@
 // The time that the robot's nodes go by, and whether it passes.
 //
 // Nodes go by the system clock, unless use_sim_time is set: then by /clock (simulated_clock.h). With
-// follow_for_all() all do. Otherwise each node says it itself (learned()). While that clock stands
+// follow_for_all() all do. Otherwise each node says it itself (learned()), again whenever it begins or ceases to
+// subscribe to /clock. While that clock stands
 // still, culprit judges nothing if all nodes are known to be simulated (doubtful()); otherwise
 // it judges nothing about the simulated ones (TimeHeld). A clock that never ticked stands still, too, as
 // that of a simulation which begins paused.
