@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "base/environment.h"
 #include "live/launch.h"
 #include "owners/proc.h"
 
@@ -43,7 +44,11 @@ std::optional<int> other_of(const std::vector<int>& processes, const std::set<in
 }  // namespace
 
 LiveRobot::LiveRobot(const RuleSet& rules)
-    : rules_(rules), binding_(rules), containers_(rules), units_(rules, inbox_) {}
+    : rules_(rules),
+      binding_(rules),
+      containers_(rules),
+      elsewhere_(host_name()),
+      units_(rules, inbox_) {}
 
 LiveRobot::~LiveRobot() = default;
 
@@ -107,6 +112,7 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
   // A component whose process was found is watched from now on, also if culprit did not start it.
   for (std::size_t i = before; i < observations.size(); ++i) {
     containers_.observe(observations[i]);
+    elsewhere_.observe(observations[i]);
     composed_->observe(observations[i]);
     const auto* appeared = std::get_if<NodeAppeared>(&observations[i].what);
     if (appeared == nullptr) continue;
@@ -242,6 +248,14 @@ void LiveRobot::start(CommandId command, ComponentId component, Duration patienc
 
 void LiveRobot::start_process(CommandId command, ComponentId component) {
   if (auto* units = units_.of(component)) return units->start(command, component);
+  if (const std::string host = elsewhere_.host_of(component); !host.empty())
+    return inbox_.put(Reply{command,
+                            Outcome::kUnreachable,
+                            {},
+                            rules_[component].name + " ran on " + host +
+                                " last, and may still run there: culprit starts no second one "
+                                "here. Start it there, or declare its owner there (UNIT or "
+                                "CONTAINER, with HOST)"});
   supervisor_->start(command, component);
 }
 

@@ -9,6 +9,7 @@
 
 #include "inbox/inbox.h"
 #include "link/link.h"
+#include "live/running_elsewhere.h"
 #include "owners/component_containers.h"
 #include "owners/composed_nodes.h"
 #include "owners/container_clients.h"
@@ -80,6 +81,7 @@ class LiveRobot : public Robot {
   Inbox inbox_;
   ComponentBinding binding_;
   owners::ComponentContainers containers_;
+  RunningElsewhere elsewhere_;
   owners::AllUnits units_;  // and containers of engines
   std::unique_ptr<owners::Supervisor> supervisor_;
   std::unique_ptr<ros2::Link> link_;
