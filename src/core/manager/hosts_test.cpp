@@ -193,6 +193,24 @@ RULE Blind
   EXPECT_EQ(two.robot["lamp"].parameters["red"], Value(true)) << transcript(two.robot);
 }
 
+// A person ended it here, and starts it there.
+TEST(Hosts, WhatAPersonMovesToAnotherOneStaysDownNoMore) {
+  TwoComputers two;
+  two.begin();
+  const ComponentId lamp = two.robot.id("lamp");
+  const Departures& departures = two.robot.manager().knowledge().departures;
+  two.robot["lamp"].process = ProcessState::kGone;
+  two.robot.tell(ProcessSeen{lamp, ProcessState::kGone, two.robot["lamp"].pid, "killed by signal 2",
+                             Cause::kOrder});
+  two.robot.run_for(30s);
+  EXPECT_TRUE(departures.stays_down(lamp)) << transcript(two.robot);
+  two.robot["lamp"].host = "rover2";
+  two.robot.start_by_hand("lamp");
+  two.robot.run_for(5s);
+  EXPECT_FALSE(departures.stays_down(lamp)) << transcript(two.robot);
+  EXPECT_FALSE(two.robot.was_asked("lamp: start process")) << transcript(two.robot);
+}
+
 // It may get round the computer: once, and that it did not help says nothing.
 TEST(Hosts, MayBeGotRoundOnce) {
   TwoComputers two(std::string(kHostRules) + R"(
