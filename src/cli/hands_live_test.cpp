@@ -1,11 +1,15 @@
 // A running culprit, asked and told from another terminal, as people do it.
 #include <csignal>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/environment.h"
+#include "terminal/local_service.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {
@@ -161,6 +165,28 @@ TEST_F(Hands, AreToldWhenACulpritThatIsStoppedDoesNotAnswer) {
   EXPECT_TRUE(top.prints("q ends, p pauses culprit")) << top.output();
   EXPECT_TRUE(top.prints("two_cameras: ") && top.prints("all is well")) << top.output();
   EXPECT_EQ(ended({"top"}).code, 2) << "there is no terminal";
+}
+
+// As after the last logout of a user: the folder of the user's sockets is removed, and made anew at the next login.
+TEST_F(Hands, ReachACulpritAfterItsUserLoggedOutAndInAgain) {
+  const std::filesystem::path folder = world.folder() / "runtime";
+  std::filesystem::create_directory(folder);
+  const std::string before = environment("XDG_RUNTIME_DIR");
+  setenv("XDG_RUNTIME_DIR", folder.c_str(), 1);
+  const auto run_ = run();
+  ASSERT_TRUE(run_->prints("culprit status")) << run_->output();
+  EXPECT_THAT(status_says("two_cameras"), HasSubstr("two_cameras"));
+  std::filesystem::remove_all(folder);
+  std::this_thread::sleep_for(2 * LocalService::kLook);
+  EXPECT_THAT(ended({"pause"}).said, HasSubstr("no culprit on this machine answers"));
+  std::filesystem::create_directory(folder);
+  std::this_thread::sleep_for(2 * LocalService::kLook);
+  EXPECT_EQ(ended({"pause"}).code, 0);
+  if (before.empty()) {
+    unsetenv("XDG_RUNTIME_DIR");
+  } else {
+    setenv("XDG_RUNTIME_DIR", before.c_str(), 1);
+  }
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ class Run {
   web::RuleDesk desk_;
   live::RobotNames names_;
   std::unique_ptr<web::HttpServer> page_;
-  std::unique_ptr<web::HttpServer> local_;
+  std::unique_ptr<LocalService> local_;
 };
 
 Run::Run(const RunOptions& options, const RuleSet& rules, Opened opened, live::RoleOfCulprit role,

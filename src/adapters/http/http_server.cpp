@@ -236,9 +236,10 @@ class HttpServer::Http {
     is_over_ = true;
   }
   void stop() {
-    if (hub_ != nullptr) hub_->close();
+    if (hub_ != nullptr && closes_hub_) hub_->close();
     server_.stop();
   }
+  void leave_hub_open() { closes_hub_ = false; }
   bool is_on_socket() const { return !options_.socket.empty(); }
   bool has_begun() const { return server_.is_running() || is_over_; }
   int port() const { return port_; }
@@ -403,6 +404,7 @@ class HttpServer::Http {
   BudgetedServer server_;
   int port_ = 0;
   bool is_bound_ = false;  // to the socket
+  bool closes_hub_ = true;
 };
 
 HttpServer::HttpServer(std::unique_ptr<Http> http) : http_(std::move(http)) {
@@ -433,6 +435,8 @@ HttpServer::~HttpServer() {
   http_->stop();
   thread_.join();
 }
+
+void HttpServer::leave_hub_open() { http_->leave_hub_open(); }
 
 int HttpServer::port() const { return http_->port(); }
 

@@ -57,6 +57,8 @@ class HttpServer {
                                                      Hub* hub);
   // Closes the hub, and with it every stream.
   ~HttpServer();
+  // Another server takes its place: its end leaves the hub open, and waits for its own streams.
+  void leave_hub_open();
 
   int port() const;
   // The address to type into a browser, token included.
