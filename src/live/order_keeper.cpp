@@ -1,5 +1,7 @@
 #include "live/order_keeper.h"
 
+#include <system_error>
+
 #include "inbox/inbox.h"
 #include "journal/order_reserve.h"
 #include "journal/sealed_file.h"
@@ -92,12 +94,11 @@ void OrderKeeper::write_later() {
   constexpr auto kAgain = std::chrono::seconds(1);
   MutexLock lock(mutex_);
   while (!is_over_) {
+    // A person, or a program that cleans up, may remove it.
+    std::error_code error;
+    if (in_file_ && !std::filesystem::exists(*file_, error) && !error) in_file_.reset();
     if (is_unwritten() && write(orders_)) is_kept_again_ = true;
-    if (is_unwritten()) {
-      wakes_.wait_for(lock, kAgain);
-    } else {
-      wakes_.wait(lock);
-    }
+    wakes_.wait_for(lock, kAgain);
   }
 }
 

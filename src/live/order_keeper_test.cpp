@@ -234,6 +234,18 @@ TEST_F(KillSwitch, IsKeptAsSoonAsTheDiskIsBack) {
   EXPECT_TRUE(Run(path, rules).is_paused());
 }
 
+TEST_F(KillSwitch, IsKeptAnewIfItsFileIsRemovedMeanwhile) {
+  Run run(path, rules);
+  EXPECT_TRUE(run.order(Pause{}).is_kept);
+  fs::remove(journal::orders_beside(path));
+  for (const Time end = live_now() + 20s;
+       !fs::exists(journal::orders_beside(path)) && live_now() < end;)
+    std::this_thread::sleep_for(10ms);
+  EXPECT_TRUE(fs::exists(journal::orders_beside(path)));
+  const Run next(path, rules);
+  EXPECT_TRUE(next.is_paused());
+}
+
 TEST_F(KillSwitch, OfAnotherMachineRestrainsOnceAndFreesNothing) {
   Run run(path, rules);
   ASSERT_TRUE(run.order(Silence{RuleId(0), {}}).is_kept);
