@@ -104,6 +104,13 @@ TEST(ExitStatus, IsTwoWhereAnOptionMakesNoSense) {
       {{"run", "--address", "localhost:8080", "rules/sunset.rules"}, "--port 8080"},
       {{"drill", "--state-dir", "Makefile", "rules/sunset.rules"}, "'Makefile' is a file"},
       {{"log", "--since", "-1h"}, "'-1h' is negative"},
+      {{"silence", "off"}, "write silence NAME --lift"},
+      {{"silence", "camera", "off"}, "write silence camera --lift"},
+      {{"incident", "--last"}, "incident without an ID lists all"},
+      {{"doctor", "--fix"}, "doctor changes nothing"},
+      {{"explain", "E012"}, "did you mean 'R012'?"},
+      {{"run", "--record-topics", "--print-config", "rules/sunset.rules"},
+       "--record-topics needs a value: TOPIC ...; '--print-config' stands in its place"},
       {{"explain", "--last", "--terms"}, "exclude each other"}};
   for (const auto& [words, cause] : calls) {
     const EndOfCommand end = end_of(words);

@@ -82,6 +82,18 @@ bool is_number(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
+// "R012" for "E012", or a term; empty: none is near.
+std::string nearest_subject(const std::string& what) {
+  constexpr std::size_t kCode = 4;
+  for (const char letter : {'R', 'D'}) {
+    const std::string code = letter + (what.size() == kCode ? what.substr(1) : "");
+    const bool is_code =
+        find_explanation(code) != nullptr || doctor::find_explanation(code) != nullptr;
+    if (is_code) return code;
+  }
+  return nearest_term(what);
+}
+
 int explain(const ExplainOptions& options) {
   if (options.lists_terms) return list_terms(options.json);
   if (options.last || is_number(options.what)) return explain_row(options);
@@ -113,7 +125,7 @@ int explain(const ExplainOptions& options) {
       fmt::print("{}", options.json ? to_line(to_json(*term)) + "\n" : page(*term));
       return kOk;
     }
-    const std::string near = nearest_term(options.what);
+    const std::string near = nearest_subject(options.what);
     return fail("there is no code and no term '" + printable(options.what) + "'" +
                     (near.empty() ? "" : "; did you mean '" + near + "'?") +
                     "\nculprit explain lists all codes, culprit explain --terms all terms; culprit "

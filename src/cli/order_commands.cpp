@@ -153,6 +153,13 @@ std::string mute_line(const Json& mute) {
   return reason.empty() ? line : line + ": " + reason;
 }
 
+// "mute off camera": why `name` can hardly be one; empty: it can.
+std::string slip_of_mute(const std::string& name) {
+  if (name == "off" || name == "remove" || name == "delete")
+    return "'" + name + "' is no component and no rule; write mute NAME --lift";
+  return name == "add" ? "'add' is no component and no rule; write mute NAME" : "";
+}
+
 // Lists muted components and rules.
 int list_mutes(const OrderOptions& options) {
   auto here = culprits_here(options.which);
@@ -258,7 +265,8 @@ void add_orders(CLI::App& app, int& exit_code) {
   mute->alias("silence");  // as it was called before
   mute->add_option("NAME", options->name, "A component or a rule; list: what is muted now")
       ->type_name("NAME")
-      ->required();
+      ->required()
+      ->check(slip_of_mute);
   auto* lasts = add_seconds(*mute, "--for", options->seconds, "How long (default: until --lift)", 1,
                             7 * 24 * 3600)
                     ->default_str("");

@@ -67,9 +67,9 @@ int parse_and_run(CLI::App& app, const std::function<void(int& exit_code)>& add_
       *argv[2] != '-';
   if (is_help_first) std::rotate(argv + 1, argv + 2, argv + argc);
   // "--wait 3 s": the unit may be taken for one more file.
-  if (const CLI::App* command = command_named(app, argv[1]); command != nullptr) {
-    if (const auto slip = duration_of_two_words(*command, argc, argv))
-      return usage_error(*slip, app, {command, app.get_name() + " " + command->get_name(), 1});
+  if (const Chosen line = named_in(app, argc, argv); line.depth > 0) {
+    if (const auto slip = slip_of_values(*line.command, argc, argv))
+      return usage_error(*slip, app, line);
   }
   try {
     app.parse(argc, argv);

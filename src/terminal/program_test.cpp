@@ -61,8 +61,13 @@ Ended ended(std::vector<std::string> words) {
         note->add_option("--since", format, "Since");
         note->add_option("--journal", file, "Where");
         note->add_option("--file", file, "What")->check(CLI::ExistingFile);
+        note->add_option("--topics", files, "Which");
+        note->add_option("--limit-per", format, "How often");
+        note->add_option("--disk", port, "How much")->type_name("SIZE");
+        note->add_flag("--lift", robot, "Ends it");
         note->callback([&code] { code = fail("the note is empty", kUsage); });
         app.add_subcommand("end-all", "End")->callback([] {});
+        app.add_subcommand("mute", "Mute")->callback([] {});
         add_help(app, code);
       },
       static_cast<int>(words.size()), argv.data());
@@ -153,12 +158,30 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"CHECK"}, "there is no command 'CHECK'; did you mean 'check'?\n"},
       {{"-v"}, "there is no option '-v'; did you mean '--version'?\n"},
       {{"--verison"}, "there is no option '--verison'\n"},
-      {{"help", "chekc"}, "there is no command 'chekc'; did you mean 'check'?\n"}};
+      {{"help", "chekc"}, "there is no command 'chekc'; did you mean 'check'?\n"},
+      {{"note", "--topics", "--lift"}, "--topics needs a value: TEXT ...; '--lift' stands in"},
+      {{"note", "--journal", "--lines=3"}, "--journal needs a value; '--lines=3' stands in its"},
+      {{"note", "--journal", "--nothing"}, "--journal needs a value; '--nothing' stands in its"},
+      {{"beliefs", "show", "--for", "3", "s"}, "show has no option '--for'"},
+      {{"note", "--disk", "5", "GB"}, "--disk: a size is one word; write --disk 5GB\n"},
+      {{"note", "--limit-per", "20", "per", "hour"},
+       "--limit-per: this value is one word; write --limit-per 20/1h\n"},
+      {{"note", "off"}, "'off' is one argument too many; write note NAME --lift\n"},
+      {{"check", "-r", "a"}, "check has no option '-r'; did you mean '--robot'?\n"},
+      {{"unsilence"}, "there is no command 'unsilence'; did you mean 'mute NAME --lift'?\n"},
+      {{"check", "--output", "a"}, "check has no option '--output'; write > FILE behind the"}};
   for (const auto& [words, cause] : mistakes) {
     const Ended end = ended(words);
     EXPECT_EQ(end.code, kUsage) << cause;
     EXPECT_THAT(end.said, HasSubstr(cause));
   }
+}
+
+TEST(Program, TakesAValueThatBeginsWithADashIfItIsNoOption) {
+  EXPECT_THAT(ended({"note", "--reason", "-5 degrees"}).said, HasSubstr("the note is empty"));
+  EXPECT_THAT(ended({"note", "--reason", "--no sign of life"}).said,
+              HasSubstr("the note is empty"));
+  EXPECT_THAT(ended({"note", "--reason=--lift"}).said, HasSubstr("the note is empty"));
 }
 
 TEST(Program, SaysHowACommandIsCalledThatFindsTheMistakeItself) {

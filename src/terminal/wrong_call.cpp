@@ -17,6 +17,7 @@
 #include "base/units.h"
 #include "terminal/help.h"
 #include "terminal/listed.h"
+#include "terminal/other_tools.h"
 
 namespace culprit {
 namespace {
@@ -43,8 +44,6 @@ std::vector<std::string> options_of(const CLI::App& command) {
   return names;
 }
 
-using Words = std::vector<std::pair<std::string_view, std::string_view>>;
-
 // "min" for "minutes"; empty: `word` is no unit.
 std::string unit_of_words(std::string_view word) {
   constexpr auto kUnits = std::to_array<std::string_view>({"ms", "s", "min", "h"});
@@ -53,105 +52,6 @@ std::string unit_of_words(std::string_view word) {
   for (std::size_t i = 0; i < kUnits.size(); ++i) {
     const bool is_unit = word == kUnits[i] || (word.size() > 2 && kLongForms[i].starts_with(word));
     if (is_unit) return std::string(kUnits[i]);
-  }
-  return "";
-}
-
-// The first word behind `word` that is known; empty: there is none.
-std::string_view translated(std::string_view word, const Words& words,
-                            const std::vector<std::string_view>& known) {
-  for (const auto& [theirs, ours] : words) {
-    if (theirs == word && std::ranges::find(known, ours) != known.end()) return ours;
-  }
-  return "";
-}
-
-// As other tools call it.
-std::string_view command_of_other_tools(std::string_view word,
-                                        const std::vector<std::string_view>& known) {
-  static const Words kWords = {
-      {"start", "run"},       {"launch", "run"},     {"up", "run"},         {"stop", "pause"},
-      {"continue", "resume"}, {"unpause", "resume"}, {"ps", "status"},      {"list", "status"},
-      {"show", "status"},     {"watch", "top"},      {"history", "log"},    {"events", "log"},
-      {"why", "explain"},     {"lint", "check"},     {"validate", "check"}, {"verify", "check"},
-      {"diagnose", "doctor"}, {"unmute", "mute"},    {"unsilence", "mute"}, {"format", "fmt"},
-      {"draft", "init"},      {"generate", "init"},  {"new", "init"},       {"simulate", "test"},
-      {"logs", "log"},        {"journal", "log"},    {"reject", "refuse"},  {"deny", "refuse"},
-      {"nodes", "graph"},     {"topics", "graph"},   {"restart", "revive"}, {"monitor", "run"},
-      {"daemon", "run"},      {"service", "run"},    {"bag", "info"},       {"diff", "fmt"},
-      {"web-ui", "web"},      {"ui", "web"},         {"edit", "web"}};
-  return translated(word, kWords, known);
-}
-
-std::string_view option_of_other_tools(std::string_view option,
-                                       const std::vector<std::string_view>& known) {
-  static const Words kWords = {
-      {"--seconds", "--for"},   {"--seconds", "--wait"},     {"--duration", "--for"},
-      {"--duration", "--wait"}, {"--time", "--for"},         {"--time", "--wait"},
-      {"--timeout", "--wait"},  {"--follow", "--watch"},     {"--lines", "--last"},
-      {"--out", "--output"},    {"--simulate", "--dry-run"}, {"--fault", "--kinds"},
-      {"--until", "--for"},     {"--tail", "--lines"},       {"--count", "--lines"},
-      {"--noop", "--dry-run"},  {"--name", "--component"},   {"--size", "--record-budget"},
-      {"--only", "--filter"},   {"--follow", "--for"},       {"--node", "--component"},
-      {"--faults", "--kinds"},  {"--component", "--only"},   {"--live", "--robot"},
-      {"-n", "--dry-run"},      {"--token", "--token-file"}, {"--level", "--kind"},
-      {"--limit", "--lines"},   {"-c", "--config"},          {"--host", "--address"},
-      {"--name", "--filter"},   {"-k", "--filter"},          {"--last", "--since"},
-      {"--timeout", "--for"},   {"--baseline", "--against"}};
-  return translated(option, kWords, known);
-}
-
-// Options that no command has, since something else does what they are for.
-std::string_view advice_about(std::string_view option, std::string_view command) {
-  struct Advice {
-    std::string_view option, command, text;  // command: empty for all
-  };
-  constexpr std::string_view kDomain = "set ROS_DOMAIN_ID, which every command heeds";
-  constexpr std::string_view kEvents = "culprit log -f shows each event as it comes";
-  constexpr std::string_view kService = "run it as a service of systemd (docs/install.md)";
-  constexpr std::string_view kFile = "write > FILE behind the command";
-  constexpr std::string_view kRosArguments =
-      "leave it out, for culprit takes no arguments of ROS; see culprit run --help";
-  constexpr std::string_view kList = "write mute list";
-  constexpr std::string_view kWarnings = "write --fail-on warning";
-  constexpr std::string_view kLasting =
-      "a pause lasts until culprit resume; culprit mute NAME --for 5min leaves one part alone";
-  constexpr std::string_view kSends = "alerts only sends a test";
-  constexpr std::string_view kWrites = "fmt writes the file unless --check or --diff is given";
-  constexpr auto kAdvice = std::to_array<Advice>({{"--werror", "check", kWarnings},
-                                                  {"--warnings-as-errors", "check", kWarnings},
-                                                  {"-W", "check", kWarnings},
-                                                  {"--for", "pause", kLasting},
-                                                  {"--watch", "top", "leave it out: top is live"},
-                                                  {"--output", "check", kFile},
-                                                  {"-o", "check", kFile},
-                                                  {"-d", "run", kService},
-                                                  {"-d", "", kDomain},
-                                                  {"--domain", "", kDomain},
-                                                  {"--domain-id", "", kDomain},
-                                                  {"--verbose", "run", kEvents},
-                                                  {"-v", "run", kEvents},
-                                                  {"--debug", "run", kEvents},
-                                                  {"--log-level", "run", kEvents},
-                                                  {"--ros-args", "", kRosArguments},
-                                                  {"-r", "", kRosArguments},
-                                                  {"--write", "fmt", kWrites},
-                                                  {"--in-place", "fmt", kWrites},
-                                                  {"-i", "fmt", kWrites},
-                                                  {"--dry-run", "alerts", kSends},
-                                                  {"--list", "mute", kList},
-                                                  {"--daemon", "run", kService},
-                                                  {"--background", "run", kService},
-                                                  {"--no-color", "", "set NO_COLOR=1"},
-                                                  {"--output", "graph", kFile},
-                                                  {"-o", "graph", kFile},
-                                                  {"--output", "plan", kFile},
-                                                  {"-o", "plan", kFile},
-                                                  {"--output", "log", kFile},
-                                                  {"-o", "log", kFile}});
-  for (const Advice& each : kAdvice) {
-    if (each.option == option && (each.command.empty() || each.command == command))
-      return each.text;
   }
   return "";
 }
@@ -224,6 +124,18 @@ std::string positional_called(const CLI::App& command, const std::string& option
   return "";
 }
 
+// "--robot" for "-r"; empty: none begins with this letter, or several do.
+std::string_view only_with_letter(std::string_view option, const std::vector<std::string>& known) {
+  std::string_view found;
+  for (const std::string_view each : known) {
+    const bool begins = option.size() == 2 && each.size() > 3 && each.starts_with("--") &&
+                        each[2] == option[1] && each != found;
+    if (begins && !found.empty()) return "";
+    if (begins) found = each;
+  }
+  return found;
+}
+
 // All options of a command that has few; nothing for others.
 std::string few_options(const std::vector<std::string>& known) {
   constexpr std::size_t kFew = 6;
@@ -261,6 +173,7 @@ std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::s
   if (std::string near = meant(option, {known.begin(), known.end()}); !near.empty()) return near;
   if (const auto parts = commands_with(command, option); !is_program && !parts.empty())
     return "; it stands behind " + joined(parts);
+  if (const auto whole = only_with_letter(option, known); !whole.empty()) return ask(whole);
   const auto others = commands_with(app, option);
   if (option.starts_with("--") && others.size() == 1)
     return ask(app.get_name() + " " + std::string(others.front()) + " " + option);
@@ -311,7 +224,11 @@ std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line,
   const std::string cause =
       (line.command == &app ? "there is" : line.command->get_name() + " has") + " no option '" +
       printable(option) + "'";
-  return cause + remedy_of(app, *line.command, option, options);
+  const bool is_of_ros =  // "-r scan:=/scan"
+      !option.starts_with("--") && std::any_of(argv + 1, argv + argc, [](const char* word) {
+        return std::string_view(word).find(":=") != std::string_view::npos;
+      });
+  return cause + remedy_of(app, *line.command, is_of_ros ? "--ros-args" : option, options);
 }
 
 std::string without(std::string text, std::string_view prefix) {
@@ -364,6 +281,10 @@ std::string missing(const CLI::RequiredError& error, const CLI::App& command) {
   return name + " is missing" + (what.empty() ? "" : " (" + lower_first(what) + ")");
 }
 
+bool is_end_of_silence(std::string_view word) {
+  return is_one_of(word, {"off", "lift", "remove", "end", "clear"});
+}
+
 // The probable remedy for the argument that is too many, behind the word `before`.
 std::string remedy_of_extra(std::string_view extra, std::string_view before,
                             const CLI::App& command) {
@@ -377,6 +298,11 @@ std::string remedy_of_extra(std::string_view extra, std::string_view before,
   const bool is_count = extra.find_first_not_of("0123456789") == std::string_view::npos;
   if (has("--lines") && is_count && !extra.empty())
     return "; did you mean --lines " + std::string(extra) + "?";
+  if (has("--lift") && (is_end_of_silence(extra) || is_end_of_silence(before))) {
+    const std::string_view name = is_end_of_silence(before) ? extra : before;
+    return "; write " + command.get_name() + " " +
+           (name == command.get_name() ? "NAME" : printable(name)) + " --lift";
+  }
   if (has("--journal") && extra.ends_with(".journal"))
     return "; did you mean --journal '" + printable(extra) + "'?";
   const bool is_rule_file = extra.ends_with(".rules");
@@ -478,11 +404,41 @@ std::optional<std::string> wrong_count(const std::string& text, const CLI::App& 
   return std::nullopt;
 }
 
+// "--record-topics --print-config": CLI11 would take an option for the value of the one in front.
+std::optional<std::string> option_for_value(const CLI::App& command, const std::string& word,
+                                            const std::string& next) {
+  const CLI::Option* option = is_option(word) ? command.get_option_no_throw(word) : nullptr;
+  const bool takes_value = option != nullptr && option->get_items_expected_min() > 0;
+  const bool is_known = command.get_option_no_throw(next.substr(0, next.find('='))) != nullptr;
+  const bool looks_like_option =
+      next.starts_with("--") && next.size() > 2 && next.find(' ') == std::string::npos;
+  if (!takes_value || !is_option(next) || (!is_known && !looks_like_option)) return std::nullopt;
+  return word + " needs a value" + kind_of_value(command, word) + "; '" + printable(next) +
+         "' stands in its place";
+}
+
+// "--for 10 minutes", "--record-disk 5 GB", "--restarts 20 per hour": `option` with the `number` and what follows.
+std::optional<std::string> value_of_several_words(const std::string& option,
+                                                  const CLI::Option& known,
+                                                  const std::string& number,
+                                                  const std::vector<std::string>& behind) {
+  const std::string type = value_of(known);
+  const std::string unit = unit_of_words(behind[0]);
+  const bool is_duration = type == "DURATION" || option == "--since";
+  if (is_duration && !unit.empty())
+    return option + ": a duration is one word; write " + option + " " + number + unit;
+  if (type == "SIZE" && is_one_of(behind[0], {"B", "kB", "KB", "MB", "GB", "TB", "MiB", "GiB"}))
+    return option + ": a size is one word; write " + option + " " + number + behind[0];
+  const std::string period = behind.size() > 1 ? unit_of_words(behind[1]) : "";
+  if (type == "TEXT" && is_one_of(behind[0], {"per", "in", "a", "/"}) && !period.empty())
+    return option + ": this value is one word; write " + option + " " + number + "/1" + period;
+  return std::nullopt;
+}
+
 // The mistake in the words of people. CLI11 has its own for each.
 std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const CLI::App& command,
                      int argc, char** argv) {
   const std::string text = error.what();
-  if (auto slip = duration_of_two_words(command, argc, argv)) return *slip;
   if (auto slip = slip_in_word(command, argc, argv)) return *slip;
   constexpr std::string_view kExcludes = " excludes ";
   if (const auto at = text.find(kExcludes); at != std::string::npos)
@@ -518,21 +474,20 @@ std::string cause_of_wrong_call(const CLI::ParseError& error, const CLI::App& ap
   return cause_of(error, app, *line.command, argc, argv);
 }
 
-std::optional<std::string> duration_of_two_words(const CLI::App& command, int argc, char** argv) {
-  for (int i = 2; i + 1 < argc; ++i) {
+std::optional<std::string> slip_of_values(const CLI::App& command, int argc, char** argv) {
+  for (int i = 2; i + 1 < argc && argv[i] != std::string_view("--"); ++i) {
+    if (auto slip = option_for_value(command, argv[i], argv[i + 1])) return slip;
     const std::string word(argv[i]);
     const auto equals = word.find('=');
     const bool is_joined = word.starts_with("--") && equals != std::string::npos;
     const std::string option = is_joined ? word.substr(0, equals) : argv[i - 1];
     const std::string number = is_joined ? word.substr(equals + 1) : word;
     const CLI::Option* known = command.get_option_no_throw(option);
-    const bool is_duration =
-        known != nullptr && (value_of(*known) == "DURATION" || option == "--since");
     const bool is_number =
         !number.empty() && number.find_first_not_of("0123456789.") == std::string::npos;
-    const std::string unit = unit_of_words(argv[i + 1]);
-    if (is_duration && is_number && !unit.empty())
-      return option + ": a duration is one word; write " + option + " " + number + unit;
+    if (known == nullptr || !is_number) continue;
+    if (auto slip = value_of_several_words(option, *known, number, {argv + i + 1, argv + argc}))
+      return slip;
   }
   return std::nullopt;
 }
@@ -564,6 +519,18 @@ std::string words_of_invalid_value(const std::string& text) {
     left = comma == std::string_view::npos ? "" : left.substr(comma + 1);
   }
   return option + "'" + value + "' is none of " + joined(known) + meant(value, known);
+}
+
+Chosen named_in(const CLI::App& app, int argc, char** argv) {
+  Chosen out{&app, app.get_name()};
+  while (out.depth + 1 < argc) {
+    const CLI::App* next = command_named(*out.command, argv[out.depth + 1]);
+    if (next == nullptr) break;
+    out.command = next;
+    out.path += " " + next->get_name();
+    ++out.depth;
+  }
+  return out;
 }
 
 Chosen chosen(const CLI::App& app) {
