@@ -6,6 +6,7 @@
 #include "journal/history.h"
 #include "journal/json.h"
 #include "json/json.h"
+#include "language/scanner.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
@@ -18,10 +19,23 @@ std::string intensity_text(const Intensity& intensity) {
   return std::to_string(intensity.most) + "/" + to_string(intensity.period);
 }
 
+// "20/1h" of "20 per hour" and "20/h"; empty: no count and unit are in it.
+std::string meant_intensity(const std::string& text) {
+  const std::string count = text.substr(0, text.find_first_not_of("0123456789"));
+  const std::string word = text.substr(std::min(text.find_last_of(" /") + 1, text.size()));
+  const std::string unit(duration_unit(word == "m" ? "min" : word));
+  if (text == "unlimited" || text == "0") return "none";
+  const bool has_number = !word.empty() && word[0] >= '0' && word[0] <= '9';  // "20/2d"
+  if (count.empty() || (has_number && word != count)) return "";
+  return unit.empty() ? count + "/1min" : count + "/1" + unit;
+}
+
 // "20/1min": at most 20 in a minute; "none": no limit.
-Expected<Intensity> parse_intensity(const std::string& option, const std::string& text) {
+Expected<Intensity> parse_intensity(const std::string& text) {
   if (text == "none") return Intensity{};
-  const Error error{option + ": '" + text + "' is no intensity; write for example 5/1min, or none"};
+  const std::string meant = meant_intensity(text);
+  const Error error{"'" + text + "' is no intensity; write " +
+                    (meant.empty() ? "for example 5/1min, or none" : meant)};
   const auto slash = text.find('/');
   if (slash == std::string::npos) return error;
   Intensity intensity;
@@ -32,8 +46,7 @@ Expected<Intensity> parse_intensity(const std::string& option, const std::string
       *period <= Duration::zero())
     return error;
   if (*period > journal::kPastCounts)
-    return Error{option + ": '" + text + "' counts for longer than " +
-                 to_string(journal::kPastCounts) +
+    return Error{"'" + text + "' counts for longer than " + to_string(journal::kPastCounts) +
                  ", and a restart of culprit forgets what is older"};
   intensity.period = *period;
   return intensity;
@@ -61,7 +74,13 @@ void GovernorOptions::add_to(CLI::App& command) {
     add_seconds(command, option, value, help, 0, kLongest)->group(kGroup);
   };
   const auto intensity = [&](const char* option, std::string& value, const char* help) {
-    command.add_option(option, value, help)->capture_default_str()->group(kGroup);
+    command.add_option(option, value, help)
+        ->check([](const std::string& text) {
+          const auto parsed = parse_intensity(text);
+          return parsed ? std::string() : parsed.error();
+        })
+        ->capture_default_str()
+        ->group(kGroup);
   };
   time("--quiet", quiet_seconds, "Begin no strategy for this time after the start");
   intensity("--intensity", overall, "Limit of strategies per time, or none");
@@ -107,8 +126,8 @@ Expected<Governor::Options> GovernorOptions::options() const {
         Wanted{"--intensity-kind", per_kind, out.limits.per_kind},
         Wanted{"--intensity-component", per_component, out.limits.per_component},
         Wanted{"--restarts", restarts, out.limits.restarts}}) {
-    const auto parsed = parse_intensity(wanted.option, wanted.text);
-    if (!parsed) return Error{parsed.error()};
+    const auto parsed = parse_intensity(wanted.text);
+    if (!parsed) return Error{wanted.option + (": " + parsed.error())};
     wanted.value = *parsed;
   }
   out.limits.backoff = {from_seconds(backoff_seconds), from_seconds(backoff_most_seconds),

@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "base/closest.h"
+#include "base/environment.h"
 #include "base/joined.h"
 #include "base/name_grammar.h"
 #include "base/text_file.h"
@@ -20,6 +21,7 @@
 #include "live/rule_trust.h"
 #include "terminal/help.h"
 #include "terminal/listed.h"
+#include "terminal/other_tools.h"
 #include "terminal/wrong_call.h"
 
 namespace culprit::cli {
@@ -94,6 +96,8 @@ std::string toml_value(const std::string& value) {
 Error no_setting(const ConfigurationFile& file, const std::string& line,
                  const std::vector<std::string>& known) {
   const std::string cause = file.place(line) + "'" + printable(line) + "' is no setting; ";
+  if (line.starts_with("export "))
+    return Error{cause + "set the variable where culprit starts: in the shell, or in its unit"};
   const auto first = std::min(line.find_first_not_of("\"'"), line.size());
   const auto end = line.find_first_of(": \t\"'", first);
   const std::string key = as_option(line.substr(first, end - first));
@@ -107,15 +111,31 @@ Error no_setting(const ConfigurationFile& file, const std::string& line,
   return Error{cause + "write " + key + " = " + printable(is_plain ? value : toml_value(value))};
 }
 
+// `value` with the home folder for its "~". Errors: only a shell can read it.
+Expected<std::string> without_shell(const std::string& value) {
+  constexpr std::string_view kHome = "$HOME/";
+  if (value.starts_with(kHome))
+    return Error{"no shell reads '" + printable(value) + "' here; write " +
+                 toml_value("~/" + value.substr(kHome.size()))};
+  if (value.starts_with('$'))
+    return Error{"no shell reads '" + printable(value) + "' here; write the variable's value"};
+  if (!value.starts_with("~/")) return value;
+  const std::string home = environment("HOME");
+  if (home.empty()) return Error{"'~' stands for no folder, as HOME is not set; write it in full"};
+  return home + value.substr(1);
+}
+
 Error unknown_key(const ConfigurationFile& file, const std::string& key,
                   const std::vector<std::string>& known) {
   if (key.find_first_of(": \t") != std::string::npos) return no_setting(file, key, known);
   const std::string plain = as_option(key);
   const bool is_known = std::find(known.begin(), known.end(), plain) != known.end();
   const std::string near = is_known ? plain : closest(plain, {known.begin(), known.end()});
-  return Error{
-      file.place(key) + "culprit run has no option '" + printable(key) + "'; " +
-      (near.empty() ? "culprit run --print-config lists all" : "did you mean '" + near + "'?")};
+  const std::string advice(advice_about("--" + plain, "run"));
+  return Error{file.place(key) + "culprit run has no option '" + printable(key) + "'; " +
+               (!near.empty()     ? "did you mean '" + near + "'?"
+                : !advice.empty() ? advice
+                                  : "culprit run --print-config lists all")};
 }
 
 // Whether the list that begins at `open` has no end before the next setting.
@@ -166,6 +186,8 @@ Error given_twice(const ConfigurationFile& file, const std::string& key) {
 // The words that stand for one line of the file. Errors: its value is wrong.
 Expected<std::vector<std::string>> words_of_item(const ConfigurationFile& file,
                                                  const CLI::ConfigItem& item, CLI::Option& option) {
+  if (item.inputs.size() > 1 && option.get_positional())
+    return Error{file.place(item.name) + "rules is one file; INCLUDE in it reads others"};
   if (item.inputs.size() > 1 && option.get_items_expected_max() <= 1)
     return given_twice(file, item.name);
   const std::string& value = item.inputs.empty() ? std::string() : item.inputs.front();
@@ -179,16 +201,29 @@ Expected<std::vector<std::string>> words_of_item(const ConfigurationFile& file,
   if (std::ranges::any_of(item.inputs, &std::string::empty) || item.inputs.empty())
     return Error{file.place(item.name) + item.name +
                  " is empty; write a value, or remove the line for the default"};
+  std::vector<std::string> values;
+  for (const std::string& each : item.inputs) {
+    auto plain = without_shell(each);
+    if (!plain) return Error{file.place(item.name) + item.name + ": " + plain.error()};
+    values.push_back(std::move(*plain));
+  }
   try {
-    option.add_result(item.inputs);
+    option.add_result(values);
     option.run_callback();
   } catch (const CLI::Error& error) {
     return Error{file.place(item.name) + words_of_invalid_value(error.what())};
   }
-  if (option.get_positional()) return item.inputs;
+  if (option.get_positional()) return values;
   std::vector<std::string> words;
-  for (const std::string& each : item.inputs) words.push_back("--" + item.name + "=" + each);
+  for (const std::string& each : values) words.push_back("--" + item.name + "=" + each);
   return words;
+}
+
+// "rules: my.rules", whose '.' CLI11 takes for that of a section; empty: `item` is another line.
+std::string line_without_section(const std::string& text, const CLI::ConfigItem& item) {
+  if (item.parents.empty()) return "";
+  const std::string line = joined(item.parents, ".") + "." + item.name;
+  return line.find(": ") != std::string::npos && text.find(line) != std::string::npos ? line : "";
 }
 
 Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, CLI::App& run) {
@@ -210,6 +245,8 @@ Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, 
   std::vector<std::string> words;
   std::set<std::string> given;
   for (const CLI::ConfigItem& item : items) {
+    if (const std::string line = line_without_section(file.text, item); !line.empty())
+      return no_setting(file, line, known);
     if (!item.parents.empty())
       return Error{file.place("[" + item.parents.front() + "]") +
                    "the file has no sections; write each option on a line of its own"};

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/environment.h"
 #include "base/test_folder.h"
 #include "cli/run_options.h"
 
@@ -122,6 +123,36 @@ TEST_F(RunConfigurationFile, SaysHowALineIsWritten) {
             file_ + ":1: culprit run has no option 'RULES'; did you mean 'rules'?");
   EXPECT_EQ(error_of("web = true\nport = 1\nweb = false\n"),
             file_ + ":3: web is given twice; keep one");
+}
+
+TEST_F(RunConfigurationFile, NamesTheHomeFolderAsAShellDoes) {
+  const auto home = environment("HOME");
+  setenv("HOME", "/home/ada", 1);
+  EXPECT_THAT(added("rules = \"~/my.rules\"\nstate-dir = \"~/state\"\n", {"run"}),
+              ElementsAre("/home/ada/my.rules", "--state-dir=/home/ada/state"));
+  EXPECT_EQ(error_of("state-dir = \"$HOME/state\"\n"),
+            file_ + ":1: state-dir: no shell reads '$HOME/state' here; write \"~/state\"");
+  EXPECT_THAT(error_of("alerts = \"$ALERTS\"\n"), HasSubstr("write the variable's value"));
+  unsetenv("HOME");
+  EXPECT_THAT(error_of("rules = \"~/my.rules\"\n"),
+              HasSubstr(":1: rules: '~' stands for no folder"));
+  setenv("HOME", home.c_str(), 1);
+}
+
+TEST_F(RunConfigurationFile, SaysWhatOtherFilesAreWrittenAs) {
+  EXPECT_EQ(error_of("rules: my.rules\n"),
+            file_ + ":1: 'rules: my.rules' is no setting; write rules = \"my.rules\"");
+  EXPECT_EQ(error_of("rules = [\"a.rules\", \"b.rules\"]\n"),
+            file_ + ":1: rules is one file; INCLUDE in it reads others");
+  EXPECT_EQ(error_of("web = true\nlog-level = \"debug\"\n"),
+            file_ +
+                ":2: culprit run has no option 'log-level'; culprit log -f shows each event as "
+                "it comes");
+  EXPECT_THAT(error_of("export ROS_DOMAIN_ID=7\n"), HasSubstr("set the variable where culprit"));
+  EXPECT_EQ(error_of("restarts = 5\n"),
+            file_ + ":1: --restarts: '5' is no intensity; write 5/1min");
+  EXPECT_THAT(error_of("record-topics = \"/scan, /odom\"\n"),
+              HasSubstr("give each topic by itself"));
 }
 
 TEST_F(RunConfigurationFile, MustBeThere) {

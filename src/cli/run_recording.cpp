@@ -49,7 +49,12 @@ void RecordingOptions::add_to(CLI::App& command) {
       .add_option("--record-topics", topics,
                   "Topics to record, with * as wildcard, or ! to exclude (default: all; large ones "
                   "within --record-budget)")
-      ->type_name("TOPIC");
+      ->type_name("TOPIC")
+      ->check([](const std::string& topic) {
+        return topic.find_first_of(", ") == std::string::npos
+                   ? std::string()
+                   : "'" + topic + "' is no topic; give each topic by itself";
+      });
   add_bytes(command, "--record-budget", memory,
             "Memory for recent messages; a quarter is for large ones", "200MB");
   add_bytes(command, "--record-disk", disk,
