@@ -66,8 +66,12 @@ const fs::path& installed() {
 
 Expected<Source> load(const std::string& file, const std::string& from) {
   const fs::path name(file);
-  if (name.extension() != kExtension)
-    return Error{"a file that is included is called *.rules, and not '" + file + "'; rename it"};
+  if (name.extension() != kExtension) {
+    const bool is_yaml = name.extension() == ".yaml" || name.extension() == ".yml";
+    return Error{
+        "a file that is included is called *.rules, and not '" + file + "'; " +
+        (is_yaml ? "parameters of a node stand behind --params-file in its LAUNCH" : "rename it")};
+  }
   std::vector<fs::path> places = {(folder_of(from) / name).lexically_normal()};
   if (name.is_relative()) places.push_back((installed() / name).lexically_normal());
   for (const fs::path& place : places) {

@@ -71,6 +71,7 @@ TEST_F(RuleFiles, AreNothingElse) {
   const std::string robot = write("robot.rules", "");
   write("secret.txt", "hidden");
   EXPECT_THAT(load("secret.txt", robot).error(), HasSubstr("is called *.rules"));
+  EXPECT_THAT(load("camera.yaml", robot).error(), HasSubstr("behind --params-file in its LAUNCH"));
   fs::create_directories(folder / "folder.rules");
   EXPECT_FALSE(load("folder.rules", robot));
   EXPECT_FALSE(load("/dev/zero", robot));

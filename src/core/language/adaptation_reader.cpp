@@ -338,7 +338,7 @@ class AdaptationReader {
   }
 
   bool unknown_adaptation(const Token& word, Scanner& s) {
-    if (hyphenated_adaptation(word, s)) return false;
+    if (hyphenated_adaptation(word, s) || is_state(word, s)) return false;
     if (const Token& sign = s.peek(); word.kind == Token::Kind::kIdentifier && sign.is("="))
       return read_.fail(
           Code::kUnknownAdaptation, {word.span.begin, sign.span.end},
@@ -378,6 +378,18 @@ class AdaptationReader {
               "activate deactivate restart redeploy start stop change_mode call start_group"
             : "did you mean '" + near + "'?",
         replacement(word.span, near));
+  }
+
+  // "state=restarted": reported.
+  bool is_state(const Token& word, const Scanner& s) {
+    Scanner ahead = s.ahead();
+    if (word.text != "state" || !ahead.next().is("=")) return false;
+    const Token value = ahead.next();
+    const std::string meant(adaptation_of_other_tools(value.text));
+    const Span span{word.span.begin, value.span.end};
+    return !meant.empty() &&
+           !read_.fail(Code::kUnknownAdaptation, span, "no adaptation is written with '='",
+                       "write " + meant, Edit{span, meant});
   }
 
   static bool is_command_word(std::string_view word) {

@@ -362,6 +362,10 @@ std::optional<TopicId> CallTyper::topic_argument(const Expression& e) {
       written.starts_with('"') && rest.starts_with('/') && is_component_reference(rest))
     return typer_.fail(Code::kBadToken, e.span, "this string has no closing '\"'",
                        "a topic has no quotes: write " + rest, Edit{e.span, rest});
+  if (written.find('*') != std::string::npos)
+    return typer_.fail(Code::kBadRosName, e.span, "'" + written + "' is no full topic name",
+                       "there are no wildcards: write a rule for each topic, or a TEMPLATE and a "
+                       "USE line for each");
   if (written.starts_with('$') || written.starts_with('{'))
     return typer_.fail(Code::kBadRosName, e.span, "'" + written + "' is no full topic name",
                        written.starts_with('$') ? "remove the '$': braces alone name a parameter"

@@ -272,6 +272,8 @@ class Checker {
     check_nodes_as_topics(file_, rules_, diagnostics_);
     check_rules_as_values(file_, diagnostics_);
     check_unused(file_, rules_, diagnostics_);
+    check_fields(file_, diagnostics_);
+    check_signals_as_statuses(file_, diagnostics_);
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);
     check_interlocks(conditions_, rules_, diagnostics_);
@@ -392,17 +394,38 @@ class Checker {
   std::vector<FileCondition> file_conditions_;
 };
 
-// A name of a template is one of the rules: a second USE with the same arguments gives it again.
-void name_uses(std::vector<Diagnostic>& diagnostics, const Source& source) {
-  for (Diagnostic& d : diagnostics) {
-    if (d.code != Code::kDuplicateName) continue;
-    const auto notes = located(d, source).notes;
-    const bool is_of_use =
-        std::ranges::any_of(notes, [](const auto& note) { return note.text == "used here"; });
-    if (is_of_use)
-      d.remedy =
-          "give each USE other arguments, and put a parameter into this name of the TEMPLATE";
+// The line above `use` that has the same statement; 0: none.
+std::uint32_t line_of_twin(const Place& use, const Source& source) {
+  const Source& file = source.file(use.file);
+  const std::string statement(file.text(use.span));
+  const std::uint32_t last = file.position(use.span.begin).line;
+  for (std::uint32_t number = 1; number < last; ++number) {
+    const std::string_view line = trimmed(file.text(file.line(number)));
+    if (line == statement || line.starts_with(statement + " ")) return number;
   }
+  return 0;
+}
+
+// A name of a template is one of the rules: a second USE with the same arguments gives it again. One report of such a
+// USE is enough.
+void name_uses(std::vector<Diagnostic>& diagnostics, const Source& source) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> twins;  // by file and place
+  std::vector<Diagnostic> kept;
+  for (Diagnostic& d : diagnostics) {
+    const auto notes = located(d, source).notes;
+    const auto use =
+        std::ranges::find_if(notes, [](const auto& note) { return note.text == "used here"; });
+    if (d.code == Code::kDuplicateName && use != notes.end()) {
+      const std::uint32_t twin = line_of_twin(use->place, source);
+      if (twin > 0 && !twins.emplace(use->place.file, use->place.span.begin).second) continue;
+      d.remedy =
+          twin > 0
+              ? "remove one of the two equal USEs: the other one is in line " + std::to_string(twin)
+              : "give each USE other arguments, and put a parameter into this name of the TEMPLATE";
+    }
+    kept.push_back(std::move(d));
+  }
+  diagnostics = std::move(kept);
 }
 
 // A mistake in a template repeats in each USE of it; one report is enough.

@@ -157,7 +157,7 @@ constexpr auto kWords = [] {
   return words;
 }();
 
-// A clause of a unit's file or of a launch file: reported.
+// A clause of a unit's file, a launch file or another tool: reported.
 bool fail_foreign_clause(Reader& r) {
   Scanner ahead = r.s.ahead();
   const Token word = ahead.next();
@@ -167,13 +167,22 @@ bool fail_foreign_clause(Reader& r) {
     return !r.read.fail(Code::kExtraText, span, "no settings of the unit stand here",
                         "remove it: the file of the unit says that");
   }
+  // pkg="my_cameras" exec="driver"
+  if (upper_case(written) == "PKG" && ahead.take('=')) {
+    const std::string package = ahead.next_name().text;
+    ahead.next();
+    const std::string program = ahead.take('=') ? ahead.next_name().text : "program";
+    return !r.read.fail(Code::kSyntax, {word.span.begin, ahead.taken()},
+                        "no attributes of a launch file stand here",
+                        "write LAUNCH \"ros2 run " + package + " " + program + "\"");
+  }
   if (r.component.package && upper_case(written) == "EXECUTABLE") {
     const std::string program = ahead.next_name().text;
     return !r.read.fail(Code::kSyntax, word.span, "unexpected '" + written + "' in this line",
                         "write LAUNCH \"ros2 run " + r.component.package->text + " " + program +
                             "\" instead of both");
   }
-  return false;
+  return r.read.is_foreign_word(word, "COMPONENT");
 }
 
 }  // namespace component_reader

@@ -61,6 +61,9 @@ bool DeclarationReader::cycle(Scanner& s) {
 bool DeclarationReader::constant(Scanner& s) {
   auto name = read_.declared_name(s, "the constant's name");
   if (!name || !read_.is_one_word(s, *name, kEqualsSign) || !equals_sign(s, *name)) return false;
+  if (const Span next = s.peek().span; source_.text(next) == "[")
+    return read_.fail(Code::kBadToken, next, "a constant is one value, and no list",
+                      "write a CONST line for each value");
   auto value = read_.expression(s);
   if (value && s.peek().is(",") && !read_.is_in_number(s.peek()))
     return read_.fail(Code::kExtraText, s.peek().span, "one line has one constant",
@@ -73,6 +76,11 @@ bool DeclarationReader::constant(Scanner& s) {
 bool DeclarationReader::equals_sign(Scanner& s, const Name& constant) {
   const Token token = s.next();
   if (token.is("=")) return true;
+  if (const Token type = s.peek(); token.is(":") && is_type_word(type.text)) {
+    const Span both{token.span.begin, type.span.end};
+    return read_.fail(Code::kSyntax, both, "a constant has no type",
+                      "remove '" + std::string(source_.text(both)) + "'", Edit{both, ""});
+  }
   const bool is_assignment = s.peek().is("=");  // ":=", "+="
   Scanner value = s.ahead();
   if (is_assignment) value.next();
@@ -278,6 +286,7 @@ bool DeclarationReader::signal(Scanner& s) {
         return read_.fail(Code::kSyntax, clause.span,
                           "'" + std::string(clause.text) + "' is no word here",
                           "did you mean FROM?", Edit{clause.span, "FROM"});
+      if (read_.is_foreign_word(clause, "SIGNAL")) return false;
       return read_.unexpected_clause(
           clause, {"STALE", "RANGE"},
           !is_publisher ? ""
@@ -354,6 +363,22 @@ bool DeclarationReader::is_apart(const Scanner& s) {
                     "write PARAMETER " + meant, Edit{written.span, meant});
 }
 
+// "PARAMETER gain", "PARAMETER camera STALE 2s": reported.
+bool DeclarationReader::lacks_one_of_both(const Scanner& s, const Name& written) {
+  if (!s.at_end() && s.peek().text != "STALE" && s.peek().text != "RANGE") return false;
+  const bool is_component =
+      written.text.starts_with('/') ||
+      std::ranges::any_of(into_.components,
+                          [&](const auto& each) { return each.name.text == written.text; }) ||
+      std::ranges::any_of(into_.broken_declarations,
+                          [&](const auto& each) { return each.name.text == written.text; });
+  if (is_component && s.at_end()) return false;  // its reader says so
+  return !read_.fail(
+      Code::kSyntax, written.span, "PARAMETER names a component and its parameter",
+      is_component ? "write the parameter behind it, as in PARAMETER " + written.text + " gain"
+                   : "write the component in front of it, as in PARAMETER camera " + written.text);
+}
+
 // "DIAGNOSTIC left motor KEY heat"
 bool DeclarationReader::is_status_whole(const Scanner& s, const Name& status) {
   Scanner ahead = s.ahead();
@@ -394,6 +419,7 @@ bool DeclarationReader::signal_source(Scanner& s, syntax::Signal& signal) {
       return read_.fail(Code::kSyntax, component->span, "a parameter is no part of a node's name",
                         "write PARAMETER " + component->text.substr(0, slash) + " " +
                             component->text.substr(slash + 1));
+    if (lacks_one_of_both(s, *component)) return false;
     auto parameter = read_.name_or_text(s, "the parameter");
     if (!parameter) return false;
     signal.source = syntax::ParameterSource{std::move(*component), std::move(*parameter)};

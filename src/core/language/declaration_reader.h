@@ -37,6 +37,7 @@ class DeclarationReader {
   bool assigned_signal(const syntax::Name& name, const Token& sign);
   bool is_status_whole(const Scanner& s, const syntax::Name& status);
   bool is_apart(const Scanner& s);
+  bool lacks_one_of_both(const Scanner& s, const syntax::Name& written);
   bool check_field(const Scanner& s, const syntax::Name& field);
   bool signal_source(Scanner& s, syntax::Signal& signal);
   bool publisher(Scanner& s, syntax::Signal& signal);

@@ -166,8 +166,7 @@ class ExpressionParser {
                       Edit{{token.span.begin, scanner_.position()}, "!"});
         }
         if (const std::string upper = upper_case(token.text);
-            (upper == "IF" || upper == "WHEN" || upper == "UNLESS") && continues(scanner_.peek()) &&
-            !scanner_.peek().is("(")) {
+            is_before_condition(upper) && continues(scanner_.peek()) && !scanner_.peek().is("(")) {
           return fail(Code::kSyntax, token.span,
                       "unexpected '" + std::string(token.text) + "' before a condition",
                       "remove it", Edit{{token.span.begin, scanner_.position()}, ""});
@@ -176,6 +175,7 @@ class ExpressionParser {
           return fail(Code::kPlaceholder, token.span,
                       "'" + std::string(token.text) + "' stands for something of yours",
                       "write the condition or the value in its place");
+        if (auto slip = letter_before_text(token, scanner_)) return fail(std::move(*slip));
         e.kind = Kind::kName;
         e.name = {std::string(token.text), token.span};
         if (auto slip = call_without_parentheses(e, scanner_)) return fail(std::move(*slip));
@@ -197,11 +197,18 @@ class ExpressionParser {
     return word == "TODO" || word == "FIXME" || word == "TBD" || word == "XXX";
   }
 
+  // A word that other languages put in front of a condition.
+  static bool is_before_condition(std::string_view upper) {
+    return upper == "IF" || upper == "WHEN" || upper == "UNLESS" || upper == "SELECT" ||
+           upper == "WHERE" || upper == "ASSERT";
+  }
+
   std::nullopt_t value_is_missing(const Token& token) {
-    if (token.is("&&") || token.is("||") || token.is("="))
-      return fail(Code::kSyntax, token.span,
-                  "a value is missing in front of '" + std::string(token.text) + "'",
-                  "write it, or remove the '" + std::string(token.text) + "'");
+    const std::string written(token.text);
+    if (token.is("=") || (binary_operator(token) != nullptr && !token.is("/")))
+      return fail(Code::kSyntax, token.span, "a value is missing in front of '" + written + "'",
+                  scanner_.at_end() ? "write the whole condition on this line"
+                                    : "write it, or remove the '" + written + "'");
     return fail(
         Code::kSyntax, token.span, "a value is missing here",
         "write a number, true or false, a \"text\", a signal, a constant or a function call");
@@ -259,15 +266,7 @@ class ExpressionParser {
 
   std::optional<Expression> call(Expression e, int depth) {
     const FunctionInfo* function = find_function(e.name.text);
-    if (function == nullptr) {
-      const std::string near = meant_function(e.name.text);
-      return fail(Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
-                  near.empty() ? "known functions: rate age phi loss alive lifecycle parameter "
-                                 "level mean min max stddev "
-                                 "changed isnan frozen cpu memory goals goal_age logs abs pow sqrt"
-                               : "did you mean '" + near + "'?",
-                  replacement(e.name.span, near));
-    }
+    if (function == nullptr) return unknown_function(e.name);
     if (depth >= kMaxNesting) return too_deep();
     e.kind = Kind::kCall;
     const Token open = scanner_.next();
@@ -294,6 +293,20 @@ class ExpressionParser {
     return e;
   }
 
+  std::nullopt_t unknown_function(const syntax::Name& name) {
+    const std::string cause = "there is no function '" + name.text + "'";
+    const std::string_view foreign = remedy_of_foreign_function(lower_case(name.text));
+    if (!foreign.empty())
+      return fail(Code::kUnknownFunction, name.span, cause, std::string(foreign));
+    const std::string near = meant_function(name.text);
+    return fail(Code::kUnknownFunction, name.span, cause,
+                near.empty() ? "known functions: rate age phi loss alive lifecycle parameter "
+                               "level mean min max stddev "
+                               "changed isnan frozen cpu memory goals goal_age logs abs pow sqrt"
+                             : "did you mean '" + near + "'?",
+                replacement(name.span, near));
+  }
+
   // "parameter(camera.gain)"
   static std::optional<Diagnostic> parameter_behind_dot(const Expression& call) {
     if (call.name.text != "parameter" || call.children.size() != 1) return std::nullopt;
@@ -310,9 +323,14 @@ class ExpressionParser {
                       Edit{name.span, meant}};
   }
 
-  static std::string meant_function(std::string_view word) {
+  static std::string lower_case(std::string_view word) {
     std::string lower(word);
     std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+    return lower;
+  }
+
+  static std::string meant_function(std::string_view word) {
+    const std::string lower = lower_case(word);
     if (find_function(lower) != nullptr) return lower;
     const std::string_view foreign = function_of_other_tools(lower);
     return foreign.empty() ? closest(lower, function_names()) : std::string(foreign);
@@ -374,8 +392,12 @@ class ExpressionParser {
       remedy = "write " + name + " without the braces";
       fix = Edit{{token.span.begin, token.span.begin + static_cast<std::uint32_t>(name.size()) + 2},
                  name};
-    } else if (written == "{" || written == "[")
+    } else if (written == "{" || written == "[") {
       remedy = "write parentheses: ( and )";
+    } else if (written == "$" && !scanner_.allows_holes()) {
+      remedy = "remove it: a name stands by itself; braces name a parameter of a TEMPLATE";
+      fix = Edit{token.span, ""};
+    }
     return fail(Code::kBadToken, token.span, cause, remedy, fix);
   }
 

@@ -65,17 +65,20 @@ std::optional<Diagnostic> state_in_words(const Expression& left, const Token& ve
       Edit{span, meant}};
 }
 
-// "battery is None"
+// "battery is None", "battery IS NOT NULL"
 std::optional<Diagnostic> nothing_in_words(const Token& verb, const Scanner& scanner) {
   Scanner ahead = scanner.ahead();
   ahead.next();
-  const Token& second = ahead.peek();
+  Token second = ahead.next();
+  const bool is_negated = upper_case(second.text) == "NOT";
+  if (is_negated) second = ahead.next();
   const std::string upper = upper_case(second.text);
   if (upper != "NONE" && upper != "NULL" && upper != "NIL") return std::nullopt;
   const Span span{verb.span.begin, second.span.end};
   return Diagnostic{Code::kSyntax, Severity::kError, span,
                     "'" + std::string(scanner.text(span)) + "' is no comparison",
-                    "age(/topic) > 1s detects that no value comes"};
+                    is_negated ? "remove it: a comparison with an unknown value is not true"
+                               : "age(/topic) > 1s detects that no value comes"};
 }
 
 // "in ("a", "b")", "not in ["a"]"
@@ -88,7 +91,9 @@ std::optional<Diagnostic> membership(const Token& first, const Scanner& scanner)
   if (!is_negated && upper_case(first.text) != "IN") return std::nullopt;
   const Token open = behind.next();
   const bool is_list = open.is("(") || scanner.text(open.span) == "[";
-  if (!is_list || (!is_negated && behind.peek().kind != Token::Kind::kString)) return std::nullopt;
+  const bool is_of_texts = behind.peek().kind == Token::Kind::kString ||
+                           scanner.text(behind.peek().span).starts_with('\'');
+  if (!is_list || (!is_negated && !is_of_texts)) return std::nullopt;
   return Diagnostic{Code::kSyntax, Severity::kError, span,
                     "'" + std::string(scanner.text(span)) + "' is no operator",
                     is_negated ? "compare with each: x != \"a\" && x != \"b\""
@@ -198,6 +203,112 @@ std::optional<Diagnostic> foreign_operator(const Expression& left, const Scanner
   }
   if (token.kind != Token::Kind::kIdentifier) return std::nullopt;
   return operator_in_words(left, token, scanner);
+}
+
+std::optional<Diagnostic> letter_before_text(const Token& word, const Scanner& scanner) {
+  const std::string_view next = scanner.text({word.span.end, word.span.end + 1});
+  const bool is_prefix = word.kind == Token::Kind::kIdentifier && word.text.size() == 1;
+  if (!is_prefix || (next != "\"" && next != "'")) return std::nullopt;
+  return Diagnostic{Code::kSyntax,
+                    Severity::kError,
+                    word.span,
+                    "no letter stands in front of a text",
+                    "remove the '" + std::string(word.text) + "'",
+                    Edit{word.span, ""}};
+}
+
+namespace {
+
+// A word behind a condition, and what to write instead.
+struct WordBehind {
+  std::string_view word, remedy;
+};
+
+// Empty: `upper` is none.
+std::string_view remedy_behind_condition(std::string_view upper) {
+  constexpr std::string_view kActs =
+      "end the line here: what to do stands below, on a STRATEGY and its ADAPTATION lines";
+  constexpr std::string_view kWhole =
+      "compare with the whole text, as in lifecycle(camera) == \"active\"";
+  constexpr auto kWords = std::to_array<WordBehind>(
+      {{"THEN", kActs},
+       {"DO", kActs},
+       {"LIKE", kWhole},
+       {"MATCHES", kWhole},
+       {"CONTAINS", kWhole},
+       {"OFFSET", "remove it: a condition is about now; mean(signal, 10s) is over time"},
+       {"BY", "remove it: a signal is one value; mean(battery, 10s) is over time"}});
+  const auto found = std::ranges::find(kWords, upper, &WordBehind::word);
+  return found == kWords.end() ? "" : found->remedy;
+}
+
+// A sign behind a condition: "lifecycle(camera).text", "battery[0]", "alive(a), alive(b)".
+std::optional<Diagnostic> sign_behind_condition(const Token& token, const Scanner& scanner) {
+  const std::uint32_t begin = token.span.begin;
+  const std::string_view before = begin > 0 ? scanner.text({begin - 1, begin}) : "";
+  const std::string_view after = scanner.text({token.span.end, token.span.end + 1});
+  const std::string_view written = scanner.text(token.span);
+  constexpr std::string_view kDigits = "0123456789";
+  const bool is_of_number = !before.empty() && !after.empty() &&
+                            kDigits.find(before) != std::string_view::npos &&
+                            kDigits.find(after) != std::string_view::npos;
+  if (token.is(",") && !is_of_number)
+    return Diagnostic{Code::kExtraText,
+                      Severity::kError,
+                      token.span,
+                      "unexpected ',' between two conditions",
+                      "write && if both must hold, || if one is enough",
+                      Edit{token.span, " &&"}};
+  if (written == "." && before == ")")
+    return Diagnostic{Code::kBadToken, Severity::kError, token.span, "a value has no methods",
+                      "compare it, as in lifecycle(camera) == \"active\""};
+  const bool is_bracket = token.flaw == Token::Flaw::kMeaningless &&
+                          std::string_view("{}[]").find(written) != std::string_view::npos;
+  if (!is_bracket) return std::nullopt;
+  return Diagnostic{
+      Code::kBadToken, Severity::kError, token.span,
+      "'" + std::string(written) + "' means nothing here",
+      "a function has parentheses, as in alive(camera); a signal has no labels, and no index"};
+}
+
+}  // namespace
+
+std::optional<Diagnostic> behind_condition(const Scanner& scanner) {
+  const Token& token = scanner.peek();
+  if (auto slip = sign_behind_condition(token, scanner)) return slip;
+  const std::string written(token.text);
+  const std::string upper = upper_case(written);
+  if (const auto remedy = remedy_behind_condition(upper); !remedy.empty())
+    return Diagnostic{Code::kExtraText, Severity::kError, token.span,
+                      "unexpected '" + written + "' behind a condition", std::string(remedy)};
+  if (upper == "UNLESS")
+    return Diagnostic{Code::kExtraText, Severity::kError, token.span,
+                      "'" + written + "' is no operator",
+                      "write && and the condition with ! in front, as in && !docked"};
+  if (upper == "IF")
+    return Diagnostic{Code::kExtraText,
+                      Severity::kError,
+                      token.span,
+                      "'" + written + "' is no operator",
+                      "write && and the condition, as in && docked",
+                      Edit{token.span, "&&"}};
+  if (is_hertz(written))
+    return Diagnostic{Code::kExtraText,
+                      Severity::kError,
+                      token.span,
+                      "rates are in Hz and have no unit",
+                      "remove '" + written + "'",
+                      Edit{token.span, ""}};
+  if (upper == "FROM")
+    return Diagnostic{Code::kExtraText, Severity::kError, token.span,
+                      "FROM stands inside the parentheses",
+                      "write it behind the topic, as in age(/scan FROM lidar)"};
+  if (syntax::adaptation_type(written))
+    return Diagnostic{
+        Code::kExtraText, Severity::kError, token.span,
+        "'" + written + "' is an adaptation, and no part of a condition",
+        "write only the condition, as in speed < 0.1; what to do stands in a STRATEGY"};
+  return std::nullopt;
 }
 
 std::optional<Diagnostic> call_without_parentheses(const Expression& name, const Scanner& scanner) {

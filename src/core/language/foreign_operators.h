@@ -17,6 +17,12 @@ std::optional<Diagnostic> doubled_operator(const Token& first, const Token& seco
 // An operator of another language, which `scanner` has next behind the value `left`: "=", "is", "not in".
 std::optional<Diagnostic> foreign_operator(const syntax::Expression& left, const Scanner& scanner);
 
+// "f"active"": Python's letter in front of a text; `scanner` is behind `word`.
+std::optional<Diagnostic> letter_before_text(const Token& word, const Scanner& scanner);
+
+// The word or sign that `scanner` has next behind a whole condition: "THEN", "unless", ",".
+std::optional<Diagnostic> behind_condition(const Scanner& scanner);
+
 // "alive camera": a function as other languages call it; `scanner` has its argument next. "age /scan" is
 // a division (typing.cpp).
 std::optional<Diagnostic> call_without_parentheses(const syntax::Expression& name,

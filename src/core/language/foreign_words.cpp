@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "language/component_reader.h"
 #include "language/line_reader.h"
@@ -16,25 +17,27 @@ struct ForeignWord {
 };
 
 constexpr auto kForeignStatements = std::to_array<ForeignWord>({
-    {"ALERT", "RULE"},         {"FAILURE", "RULE"},         {"FAULT", "RULE"},
-    {"SEVERITY", "POLICIES"},  {"POLICY", "POLICIES"},      {"LEVEL", "POLICIES"},
-    {"PRIORITY", "POLICIES"},  {"CRITICALITY", "POLICIES"}, {"IF", "TRIGGER"},
-    {"EXPR", "TRIGGER"},       {"ON", "TRIGGER"},           {"CONDITION", "TRIGGER"},
-    {"TRIGGERED", "TRIGGER"},  {"REPAIR", "STRATEGY"},      {"ON_FAILURE", "STRATEGY"},
-    {"ONFAILURE", "STRATEGY"}, {"RECOVERY", "STRATEGY"},    {"ACTION", "ADAPTATION"},
-    {"DO", "ADAPTATION"},      {"ADAPT", "ADAPTATION"},     {"TASK", "ADAPTATION"},
-    {"DEPENDS", "DEPENDENCY"}, {"REQUIRES", "DEPENDENCY"},  {"AFTER", "DEPENDENCY"},
-    {"LET", "CONST"},          {"DEFINE", "CONST"},         {"CONSTANT", "CONST"},
-    {"VAR", "CONST"},          {"VARIABLE", "SIGNAL"},      {"METRIC", "SIGNAL"},
-    {"SENSOR", "SIGNAL"},      {"IMPORT", "INCLUDE"},       {"SOURCE", "INCLUDE"},
-    {"MACRO", "TEMPLATE"},     {"FUNCTION", "TEMPLATE"},    {"APPLY", "USE"},
-    {"PROCESS", "COMPONENT"},  {"SERVICE", "COMPONENT"},    {"GUARD", "INTERLOCK"},
-    {"ENDTEMPLATE", "END"},    {"SYSTEM", "ROBOT"},         {"PERIOD", "CYCLE"},
+    {"ALERT", "RULE"},           {"FAILURE", "RULE"},        {"FAULT", "RULE"},
+    {"SEVERITY", "POLICIES"},    {"POLICY", "POLICIES"},     {"LEVEL", "POLICIES"},
+    {"CRITICALITY", "POLICIES"}, {"IF", "TRIGGER"},          {"EXPR", "TRIGGER"},
+    {"ON", "TRIGGER"},           {"CONDITION", "TRIGGER"},   {"TRIGGERED", "TRIGGER"},
+    {"REPAIR", "STRATEGY"},      {"ON_FAILURE", "STRATEGY"}, {"ONFAILURE", "STRATEGY"},
+    {"RECOVERY", "STRATEGY"},    {"ACTION", "ADAPTATION"},   {"DO", "ADAPTATION"},
+    {"ADAPT", "ADAPTATION"},     {"TASK", "ADAPTATION"},     {"DEPENDS", "DEPENDENCY"},
+    {"REQUIRES", "DEPENDENCY"},  {"AFTER", "DEPENDENCY"},    {"LET", "CONST"},
+    {"DEFINE", "CONST"},         {"CONSTANT", "CONST"},      {"VAR", "CONST"},
+    {"VARIABLE", "SIGNAL"},      {"METRIC", "SIGNAL"},       {"SENSOR", "SIGNAL"},
+    {"IMPORT", "INCLUDE"},       {"SOURCE", "INCLUDE"},      {"MACRO", "TEMPLATE"},
+    {"FUNCTION", "TEMPLATE"},    {"APPLY", "USE"},           {"PROCESS", "COMPONENT"},
+    {"SERVICE", "COMPONENT"},    {"GUARD", "INTERLOCK"},     {"ENDTEMPLATE", "END"},
+    {"SYSTEM", "ROBOT"},         {"PERIOD", "CYCLE"},
 });
 
 // Several of ours: the first that the line may have.
 constexpr auto kForeignClauses = std::to_array<ForeignWord>({
     {"HEALED", "RESOLVED"},
+    {"SUCCEEDS", "HEALS"},
+    {"FIXES", "HEALS"},
     {"FAILS", "REFUSED"},
     {"REJECTED", "REFUSED"},
     {"ERR", "ERROR"},
@@ -59,7 +62,6 @@ constexpr auto kForeignClauses = std::to_array<ForeignWord>({
     {"STARTUP", "READY"},
     {"TIMEOUT", "READY"},
     {"NAME", "NODE"},
-    {"NAMESPACE", "NODE"},
     {"PARAMS", "PARAMETERS"},
     {"PARAM", "PARAMETER"},
     {"DIAG", "DIAGNOSTIC"},
@@ -71,6 +73,8 @@ constexpr auto kForeignClauses = std::to_array<ForeignWord>({
     {"LIMITS", "RANGE"},
     {"BETWEEN", "RANGE"},
     {"RETRIES", "ATTEMPTS"},
+    {"BACKOFFLIMIT", "ATTEMPTS"},
+    {"BACKOFF_LIMIT", "ATTEMPTS"},
     {"RETRY", "ATTEMPTS"},
     {"MAX_ATTEMPTS", "ATTEMPTS"},
     {"TRIES", "ATTEMPTS"},
@@ -85,12 +89,15 @@ constexpr auto kForeignClauses = std::to_array<ForeignWord>({
     {"ONCE", "ON_CHANGE"},
     {"NOTIFY", "REPORT"},
     {"BACKOFF", "COOLDOWN"},
+    {"KEEP_FIRING_FOR", "COOLDOWN"},
     {"QUIET", "COOLDOWN"},
     {"PAUSE", "COOLDOWN"},
     {"FAILS", "DETECTED"},
     {"FAILED", "DETECTED"},
     {"FIRES", "DETECTED"},
     {"FIRED", "DETECTED"},
+    {"FIRING", "DETECTED"},
+    {"TRIGGERED", "DETECTED"},
     {"RECOVERED", "RESOLVED"},
     {"CLEARED", "RESOLVED"},
     {"FIXED", "RESOLVED"},
@@ -110,6 +117,7 @@ constexpr auto kForeignClauses = std::to_array<ForeignWord>({
     {"IN", "BY"},
     {"BEFORE", "BY"},
     {"UNTIL", "BY"},
+    {"AT", "BY"},
     {"CRASH", "kill"},
     {"EXIT", "kill"},
     {"STOP", "hang"},
@@ -130,6 +138,12 @@ constexpr auto kForeignAdaptations = std::to_array<ForeignWord>({
     {"restart_node", "redeploy"},
     {"restart_process", "redeploy"},
     {"restart_service", "redeploy"},
+    {"rollout_restart", "redeploy"},
+    {"restarted", "redeploy"},
+    {"reloaded", "redeploy"},
+    {"started", "start"},
+    {"stopped", "stop"},
+    {"scale", "stop"},
     {"launch", "start"},
     {"run", "start"},
     {"enable", "activate"},
@@ -207,6 +221,121 @@ constexpr auto kClauses = std::to_array<ForeignWord>({
     {"ON", "DEPENDENCY"},     {"USER", "COMPONENT"},
 });
 
+// Words for what the language has in another form, or does not need.
+struct WordWithoutCounterpart {
+  std::string_view line;  // the statement that it stands in; empty: it begins a line
+  std::string_view word, remedy;
+};
+
+constexpr std::string_view kText = "write # in front of it: a rule has no text of its own";
+constexpr std::string_view kSwitch =
+    "remove the line; to switch a rule off, put # in front of its lines";
+constexpr std::string_view kRank =
+    "the criticality on the POLICIES line says which failure comes first: ERROR, then WARNING";
+constexpr std::string_view kGrouped =
+    "remove the line: culprit groups failures by their root cause";
+constexpr std::string_view kWatched = "a rule notices it: RULE, and TRIGGER !alive(camera)";
+constexpr std::string_view kNamespace = "write it into the full name, as in NODE /robot/camera";
+constexpr std::string_view kAlternatives =
+    "write a STRATEGY line for each way: the strategies of a rule are alternatives";
+constexpr std::string_view kNoUnit = "remove it: a signal has no unit; a comment may name it";
+constexpr std::string_view kDependency = "write a line of its own: DEPENDENCY fusion ON camera";
+constexpr std::string_view kArguments = "write the arguments in LAUNCH, behind the program";
+constexpr std::string_view kAttempts = "write ATTEMPTS and the number on the POLICIES line";
+constexpr std::string_view kImpact =
+    "remove it: the impact, the last number of an ADAPTATION, says in cycles how long it may take";
+constexpr std::string_view kWhen = "write WHEN on the STRATEGY line, behind its two numbers";
+constexpr std::string_view kOwnUser =
+    "remove it: culprit acts as its own user; a UNIT needs no root";
+
+constexpr auto kWithoutCounterpart = std::to_array<WordWithoutCounterpart>({
+    {"", "DESCRIPTION", kText},
+    {"", "COMMENT", kText},
+    {"", "NOTE", kText},
+    {"", "AUTHOR", kText},
+    {"", "SUMMARY", kText},
+    {"", "ANNOTATIONS", kText},
+    {"", "LABELS", kText},
+    {"", "ENABLED", kSwitch},
+    {"", "DISABLED", kSwitch},
+    {"", "LOG", "remove the line: culprit keeps each step in its journal"},
+    {"", "NOTIFY", "write REPORT on the POLICIES line, which notifies a person"},
+    {"", "ENDRULE", "remove the line: a rule ends where the next one begins"},
+    {"", "PRIORITY", kRank},
+    {"", "GROUP_BY", kGrouped},
+    {"", "INHIBIT", kGrouped},
+    {"", "WATCHDOG", kWatched},
+    {"", "PROBE", kWatched},
+    {"", "NAMESPACE", kNamespace},
+    {"", "HOSTS", "write HOST on the COMPONENT line of each part that runs there"},
+    {"", "SEQUENCE", "write STRATEGY in its place: its ADAPTATION lines follow in order"},
+    {"", "FALLBACK", kAlternatives},
+    {"", "SELECTOR", kAlternatives},
+    {"POLICIES", "PRIORITY", "remove it: ERROR comes before WARNING, and that before NON_CRITICAL"},
+    {"POLICIES", "SEVERITY", "write only the criticality: POLICIES ERROR"},
+    {"POLICIES", "LEVEL", "write only the criticality: POLICIES ERROR"},
+    {"POLICIES", "PENDING", "a criticality comes first, then the time: POLICIES WARNING FOR 5min"},
+    {"POLICIES", "REPEAT_INTERVAL", "remove it: culprit notifies once for each failure"},
+    {"SIGNAL", "UNIT", kNoUnit},
+    {"SIGNAL", "UNITS", kNoUnit},
+    {"SIGNAL", "NO_DATA", "remove it: STALE 2s makes a value unknown that is older"},
+    {"SIGNAL", "DEFAULT", "remove it: a signal without a value is unknown"},
+    {"SIGNAL", "TYPE", "remove it: the rules that read a signal show its type"},
+    {"COMPONENT", "NAMESPACE", kNamespace},
+    {"COMPONENT", "IMAGE",
+     "write CONTAINER docker, and the container's name as docker ps shows it"},
+    {"COMPONENT", "REPLICAS", "write a COMPONENT line for each"},
+    {"COMPONENT", "LIVENESS", kWatched},
+    {"COMPONENT", "HEALTHCHECK", kWatched},
+    {"COMPONENT", "WATCHDOG", kWatched},
+    {"COMPONENT", "ARGS", kArguments},
+    {"COMPONENT", "ARGUMENTS", kArguments},
+    {"COMPONENT", "OUTPUT", "remove it: culprit keeps what a component prints in its log folder"},
+    {"COMPONENT", "RESPAWN_DELAY", "remove it: culprit run --backoff 2s sets this for all"},
+    {"COMPONENT", "AFTER", kDependency},
+    {"COMPONENT", "REQUIRES", kDependency},
+    {"COMPONENT", "WANTS", kDependency},
+    {"COMPONENT", "DEPENDS", kDependency},
+    {"COMPONENT", "DEPENDS_ON", kDependency},
+    {"COMPONENT", "WANTEDBY", "remove it: the file of the unit says that"},
+    {"STRATEGY", "PRIORITY", "remove it: probability and impact decide which strategy comes first"},
+    {"STRATEGY", "RETRY", kAttempts},
+    {"STRATEGY", "RETRIES", kAttempts},
+    {"STRATEGY", "TIMEOUT", kImpact},
+    {"STRATEGY", "ELSE", kAlternatives},
+    {"ADAPTATION", "RETRY", kAttempts},
+    {"ADAPTATION", "RETRIES", kAttempts},
+    {"ADAPTATION", "TIMEOUT", kImpact},
+    {"ADAPTATION", "WHEN", kWhen},
+    {"ADAPTATION", "IF", kWhen},
+    {"ADAPTATION", "NOTIFY", "remove it: culprit notifies of each repair itself (docs/alerts.md)"},
+    {"ADAPTATION", "BECOME", kOwnUser},
+    {"ADAPTATION", "SUDO", kOwnUser},
+    {"ADAPTATION", "||", kAlternatives},
+    {"ADAPTATION", "OR", kAlternatives},
+    {"ADAPTATION", "&&", "write the next one on a line of its own that begins with ADAPTATION"},
+    {"ADAPTATION", "AND", "write the next one on a line of its own that begins with ADAPTATION"},
+});
+
+constexpr std::string_view kItself = "write the signal by itself, as in battery < 0.2";
+constexpr std::string_view kSilent = "write age(/topic) > 2s: no message came for that long";
+constexpr auto kFunctionsWithoutCounterpart =
+    std::to_array<std::pair<std::string_view, std::string_view>>({
+        {"any", "join conditions with ||, as in !alive(a) || !alive(b)"},
+        {"all", "join conditions with &&, as in alive(a) && alive(b)"},
+        {"silent", kSilent},
+        {"absent_over_time", kSilent},
+        {"len", "rate(/topic) counts messages in Hz, age(/topic) the time since the last one"},
+        {"sum", "join the values with +, as in a + b; mean(signal, 10s) is over time"},
+        {"histogram_quantile", "max(signal, 10s) and mean(signal, 10s) are over time"},
+        {"predict_linear", "culprit does not predict: compare the signal, as in battery < 0.2"},
+        {"float", kItself},
+        {"int", kItself},
+        {"round", kItself},
+        {"last", kItself},
+        {"value", kItself},
+    });
+
 std::string_view our_word(std::span<const ForeignWord> words, std::string_view theirs) {
   const auto found = std::ranges::find(words, theirs, &ForeignWord::theirs);
   return found == words.end() ? "" : found->ours;
@@ -234,6 +363,21 @@ std::string_view adaptation_of_other_tools(std::string_view word) {
 
 std::string_view function_of_other_tools(std::string_view word) {
   return our_word(kForeignFunctions, word);
+}
+
+std::string_view remedy_of_foreign_word(std::string_view word, std::string_view line) {
+  const std::string upper = upper_case(word);
+  const auto found = std::ranges::find_if(
+      kWithoutCounterpart,
+      [&](const WordWithoutCounterpart& each) { return each.line == line && each.word == upper; });
+  return found == kWithoutCounterpart.end() ? "" : found->remedy;
+}
+
+std::string_view remedy_of_foreign_function(std::string_view word) {
+  for (const auto& [theirs, remedy] : kFunctionsWithoutCounterpart) {
+    if (theirs == word) return remedy;
+  }
+  return "";
 }
 
 std::string_view statement_of_clause(std::string_view word) {

@@ -17,6 +17,12 @@ std::string_view adaptation_of_other_tools(std::string_view word);
 // In lower case: "hz" -> "rate"; "dead" -> "!alive".
 std::string_view function_of_other_tools(std::string_view word);
 
+// The remedy for a word that the language has in no form, in any case: "remove it: a signal has no unit". `line`: the
+// statement that it stands in, as "SIGNAL"; empty: it begins a line.
+std::string_view remedy_of_foreign_word(std::string_view word, std::string_view line);
+// The same for a function, in lower case: "len".
+std::string_view remedy_of_foreign_function(std::string_view word);
+
 // Our own: the statement whose line has the clause, in any case: "FOR" -> "POLICIES".
 std::string_view statement_of_clause(std::string_view word);
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "language/functions.h"
+#include "language/scanner.h"
 
 namespace culprit {
 namespace {
@@ -41,6 +42,12 @@ bool names_variable(std::string_view word) {
   return (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z') || first == '_';
 }
 
+// A substitution, as in "$(find-pkg-share my_cameras)/config".
+bool is_of_launch_file(std::string_view word) {
+  return word.starts_with("$(find") || word.starts_with("$(var") || word.starts_with("$(env") ||
+         word.starts_with("$(dirname");
+}
+
 struct ShellWord {
   std::string word;  // that only a shell understands; empty: there is none
   std::string remedy;
@@ -58,6 +65,10 @@ ShellWord shell_word(const std::vector<std::string>& command, const std::string&
   if (program == "export" || sets_variable(program))
     return {program, "variables are a clause of their own: ENV \"NAME=value\""};
   for (const std::string& word : command) {
+    if (is_of_launch_file(word))
+      return {word,
+              "write the path in full, or LAUNCH \"package/file.launch.py#node\" for a node "
+              "of a launch file"};
     if (word.find("\u2013") != std::string::npos || word.find("\u2014") != std::string::npos ||
         word.find("\u201c") != std::string::npos || word.find("\u201d") != std::string::npos)
       return {word, "write the - and the \" of the keyboard, not typographic ones"};
@@ -70,6 +81,8 @@ ShellWord shell_word(const std::vector<std::string>& command, const std::string&
       return {word, "write the full path of the home folder: /home/robot" + word.substr(1)};
     if (names_variable(word))
       return {word, "write its value, or ask for a shell: LAUNCH \"bash -c '...'\""};
+    if (has_hole(word))
+      return {word, "write its value: braces name a parameter of a TEMPLATE only"};
     if (word.find('*') != std::string::npos && word.find(':') == std::string::npos)
       return {word, "name each file, or ask for a shell: LAUNCH \"bash -c '...'\""};
   }
@@ -92,23 +105,25 @@ std::optional<Edit> with_setup(const syntax::Component& written,
   return Edit{written.launch->span, "\"" + text.substr(first) + "\" SETUP " + command[1]};
 }
 
-// Calls `check` with the component of each alive(), lifecycle(), cpu() and memory() in `e`.
-void check_calls(const syntax::Expression& e,
-                 const std::function<void(const syntax::Name&)>& check) {
-  const bool is_of_component = e.kind == syntax::Expression::Kind::kCall &&
-                               e.children.size() == 1 &&
-                               is_one_of(e.name.text, {"alive", "lifecycle", "cpu", "memory"});
-  if (is_of_component) check(e.children[0].name);
-  for (const syntax::Expression& child : e.children) check_calls(child, check);
+// Calls `take` with the first argument of each call of one of `functions` in `e`.
+void for_each_argument(const syntax::Expression& e,
+                       std::initializer_list<std::string_view> functions,
+                       const std::function<void(const syntax::Name&)>& take) {
+  const bool is_one = e.kind == syntax::Expression::Kind::kCall && !e.children.empty() &&
+                      is_one_of(e.name.text, functions);
+  if (is_one) take(e.children[0].name);
+  for (const syntax::Expression& child : e.children) for_each_argument(child, functions, take);
 }
 
-// Calls `take` with the topic of each age(), rate(), phi() and loss() in `e`.
+// Of a component.
+void check_calls(const syntax::Expression& e,
+                 const std::function<void(const syntax::Name&)>& check) {
+  for_each_argument(e, {"alive", "lifecycle", "cpu", "memory"}, check);
+}
+
 void for_each_topic(const syntax::Expression& e,
                     const std::function<void(const syntax::Name&)>& take) {
-  const bool is_of_topic = e.kind == syntax::Expression::Kind::kCall && !e.children.empty() &&
-                           is_one_of(e.name.text, {"age", "rate", "phi", "loss"});
-  if (is_of_topic) take(e.children[0].name);
-  for (const syntax::Expression& child : e.children) for_each_topic(child, take);
+  for_each_argument(e, {"age", "rate", "phi", "loss"}, take);
 }
 
 // Calls `take` with each name in `e` that is a value by itself.
@@ -122,6 +137,14 @@ void for_each_value(const syntax::Expression& e,
                           function->arguments[i] == Argument::kExpression;
     if (is_value) for_each_value(e.children[i], take);
   }
+}
+
+std::set<std::string_view> names_of_strategies(const syntax::File& file) {
+  std::set<std::string_view> names;
+  for (const syntax::Rule& rule : file.rules) {
+    for (const syntax::Strategy& strategy : rule.strategies) names.insert(strategy.name.text);
+  }
+  return names;
 }
 
 // The names of constants, signals and groups.
@@ -241,11 +264,17 @@ void check_rules_as_values(const syntax::File& file, std::vector<Diagnostic>& di
       });
     if (!is_signal) names.insert(rule.name.text);
   }
+  const std::set<std::string_view> strategies = names_of_strategies(file);
   const auto check = [&](const syntax::Name& value) {
-    if (!names.contains(value.text)) return;
-    diagnostics.push_back({Code::kUnknownName, Severity::kWarning, value.span,
-                           "'" + value.text + "' is a rule, and is read as a signal here",
-                           "write the condition of its TRIGGER, or declare a SIGNAL of this name"});
+    const bool is_rule = names.contains(value.text);
+    if (!is_rule && (!strategies.contains(value.text) || values.contains(value.text))) return;
+    diagnostics.push_back(
+        {Code::kUnknownName, Severity::kWarning, value.span,
+         "'" + value.text + "' is a " + (is_rule ? "rule" : "strategy") +
+             ", and is read as a signal here",
+         is_rule ? "write the condition of its TRIGGER, or declare a SIGNAL of this name"
+                 : "write a condition; one that holds for this strategy only stands behind WHEN on "
+                   "its line"});
   };
   for (const syntax::Interlock& interlock : file.interlocks)
     for_each_value(interlock.condition, check);
@@ -253,6 +282,44 @@ void check_rules_as_values(const syntax::File& file, std::vector<Diagnostic>& di
     if (rule.trigger) for_each_value(*rule.trigger, check);
     for (const syntax::Strategy& strategy : rule.strategies) {
       if (strategy.when) for_each_value(*strategy.when, check);
+    }
+  }
+}
+
+void check_fields(const syntax::File& file, std::vector<Diagnostic>& diagnostics) {
+  for (const syntax::Signal& signal : file.signals) {
+    const auto* topic = std::get_if<syntax::TopicSource>(&signal.source);
+    constexpr std::string_view kMessage = "msg.";
+    if (topic == nullptr || !topic->field.text.starts_with(kMessage)) continue;
+    const std::string rest = topic->field.text.substr(kMessage.size());
+    diagnostics.push_back({Code::kUnknownName, Severity::kWarning, topic->field.span,
+                           "'msg' is read as a field of the message",
+                           "if it stands for the message itself, write " + rest,
+                           Edit{topic->field.span, rest}});
+  }
+}
+
+void check_signals_as_statuses(const syntax::File& file, std::vector<Diagnostic>& diagnostics) {
+  std::set<std::string_view> statuses;
+  for (const syntax::Signal& signal : file.signals) {
+    if (const auto* source = std::get_if<syntax::DiagnosticSource>(&signal.source))
+      statuses.insert(source->status.text);
+  }
+  const auto check = [&](const syntax::Name& status) {
+    const auto signal = std::ranges::find_if(
+        file.signals, [&](const syntax::Signal& each) { return each.name.text == status.text; });
+    if (signal == file.signals.end() || statuses.contains(status.text)) return;
+    const auto* source = std::get_if<syntax::DiagnosticSource>(&signal->source);
+    diagnostics.push_back(
+        {Code::kUnknownName, Severity::kWarning, status.span,
+         "level(" + status.text + ") reads a diagnostic status of this name, and no signal",
+         source != nullptr ? "write the status of the signal: level(" + source->status.text + ")"
+                           : "write the signal by itself, as in " + status.text + " < 0.2"});
+  };
+  for (const syntax::Rule& rule : file.rules) {
+    if (rule.trigger) for_each_argument(*rule.trigger, {"level"}, check);
+    for (const syntax::Strategy& strategy : rule.strategies) {
+      if (strategy.when) for_each_argument(*strategy.when, {"level"}, check);
     }
   }
 }

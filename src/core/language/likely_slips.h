@@ -30,8 +30,14 @@ void check_topics_as_components(const syntax::File& file, const RuleSet& rules,
 void check_nodes_as_topics(const syntax::File& file, const RuleSet& rules,
                            std::vector<Diagnostic>& diagnostics);
 
-// The name of another rule where a value belongs, as if its failure were one.
+// The name of another rule or of a strategy where a value belongs, as if its failure were one.
 void check_rules_as_values(const syntax::File& file, std::vector<Diagnostic>& diagnostics);
+
+// A FIELD that begins with the message itself: "msg.percentage".
+void check_fields(const syntax::File& file, std::vector<Diagnostic>& diagnostics);
+
+// A signal where level() takes a diagnostic status.
+void check_signals_as_statuses(const syntax::File& file, std::vector<Diagnostic>& diagnostics);
 
 // Components that are declared and that nothing in the rules is about, if there are rules.
 void check_unused(const syntax::File& file, const RuleSet& rules,

@@ -6,6 +6,7 @@
 
 #include "base/joined.h"
 #include "language/expression_parser.h"
+#include "language/foreign_operators.h"
 #include "language/foreign_words.h"
 #include "language/reserved_words.h"
 
@@ -93,6 +94,7 @@ std::string remedy_of_ros_name(std::string_view name) {
                ? "write /" + written
                : "write /" + written + ", or with its namespace: /namespace/" + written;
   }
+  if (name.starts_with('~')) return "write the full name, with the node's namespace: /robot/camera";
   if (name.find('*') != std::string_view::npos)
     return "there are no wildcards: write each full name";
   if (name.ends_with('/') && is_ros_name(name.substr(0, name.size() - 1)))
@@ -167,6 +169,12 @@ std::optional<Name> LineReader::name_or_text(Scanner& s, std::string_view what) 
     }
   }
   Name name = s.next_name();
+  if (name.text.ends_with('$') && s.peek().is("(")) {
+    fail(Code::kSyntax, {name.span.end - 1, s.peek().span.end},
+         "'$(' begins a substitution of a launch file, which nothing evaluates here",
+         "write the path or the name in full");
+    return std::nullopt;
+  }
   if (!name.text.empty() && name.text.size() <= Scanner::kMaxName) return name;
   fail(Code::kSyntax, name.span, "expected " + std::string(what),
        !name.text.empty() ? "it is too long for a name"
@@ -211,6 +219,10 @@ std::optional<Name> LineReader::text(Scanner& s, std::string_view what, std::str
   const Token token = s.next();
   if (token.kind == Token::Kind::kString)
     return Name{std::get<std::string>(token.value()), token.span};
+  if (auto slip = letter_before_text(token, s)) {
+    diagnostics_.push_back(std::move(*slip));
+    return std::nullopt;
+  }
   fail_token(token, what, std::string(remedy));
   return std::nullopt;
 }
@@ -409,6 +421,8 @@ bool LineReader::fail_token(const Token& token, std::string_view expected, std::
                 "remove the '" + written + "'", Edit{token.span, blank_for(token)});
   }
   if (token.is("(") && (remedy.empty() || remedy == kNameRemedy)) remedy = "remove the parentheses";
+  if (written == "{" && source_.text({token.span.begin, token.span.begin + 2}) == "{{")
+    remedy = "a parameter of a TEMPLATE stands in one pair of braces, as in {name}";
   const bool is_of_place = is_bracket(token, written) && !remedy.empty();
   if (token.kind == Token::Kind::kBad && !is_of_place) {
     const auto [cause, its_fix, its_remedy] = complaint_about(token);
@@ -541,41 +555,18 @@ bool LineReader::line_ends(Scanner& s, std::string_view remedy) {
 }
 
 bool LineReader::condition_ends(Scanner& s) {
-  const Token& token = s.peek();
-  const std::string_view text = source_.text();
-  const bool is_of_number =
-      token.span.begin > 0 && token.span.end < text.size() &&
-      std::isdigit(static_cast<unsigned char>(text[token.span.begin - 1])) != 0 &&
-      std::isdigit(static_cast<unsigned char>(text[token.span.end])) != 0;
-  if (token.is(",") && !is_of_number)
-    return fail(Code::kExtraText, token.span, "unexpected ',' between two conditions",
-                "write && if both must hold, || if one is enough", Edit{token.span, " &&"});
-  const bool is_behind_call = token.span.begin > 0 && text[token.span.begin - 1] == ')';
-  if (source_.text(token.span) == "." && is_behind_call)
-    return fail(Code::kBadToken, token.span, "a value has no methods",
-                "compare it, as in lifecycle(camera) == \"active\"");
-  if (is_bracket(token, source_.text(token.span)))
-    return fail(
-        Code::kBadToken, token.span,
-        "'" + std::string(source_.text(token.span)) + "' means nothing here",
-        "a function has parentheses, as in alive(camera); a signal has no labels, and no index");
-  if (upper_case(token.text) == "UNLESS")
-    return fail(Code::kExtraText, token.span, "'" + std::string(token.text) + "' is no operator",
-                "write && and the condition with ! in front, as in && !docked");
-  if (upper_case(token.text) == "IF")
-    return fail(Code::kExtraText, token.span, "'" + std::string(token.text) + "' is no operator",
-                "write && and the condition, as in && docked", Edit{token.span, "&&"});
-  if (is_hertz(token.text))
-    return fail(Code::kExtraText, token.span, "rates are in Hz and have no unit",
-                "remove '" + std::string(token.text) + "'", Edit{token.span, ""});
-  if (upper_case(token.text) == "FROM")
-    return fail(Code::kExtraText, token.span, "FROM stands inside the parentheses",
-                "write it behind the topic, as in age(/scan FROM lidar)");
-  if (syntax::adaptation_type(token.text))
-    return fail(Code::kExtraText, token.span,
-                "'" + std::string(token.text) + "' is an adaptation, and no part of a condition",
-                "write only the condition, as in speed < 0.1; what to do stands in a STRATEGY");
+  if (auto slip = behind_condition(s)) {
+    diagnostics_.push_back(std::move(*slip));
+    return false;
+  }
   return line_ends(s, "join two conditions with && or ||, or remove it; a comment begins with #");
+}
+
+bool LineReader::is_foreign_word(const Token& word, std::string_view line, Code code) {
+  const std::string_view remedy = remedy_of_foreign_word(word.text, line);
+  return !remedy.empty() &&
+         !fail(code, word.span, "unexpected '" + std::string(word.text) + "' in this line",
+               std::string(remedy));
 }
 
 std::optional<syntax::Expression> LineReader::expression(Scanner& s) {

@@ -68,6 +68,8 @@ class LineReader {
   bool line_ends(Scanner& s, std::string_view remedy = "");
   // The same behind a condition.
   bool condition_ends(Scanner& s);
+  // A word of another tool that the `line` of that statement has in no form: reported.
+  bool is_foreign_word(const Token& word, std::string_view line, Code code = Code::kSyntax);
   bool fail_comma(const Token& comma);
   // "0,5"
   bool is_in_number(const Token& comma) const;

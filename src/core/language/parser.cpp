@@ -129,7 +129,9 @@ class Parser {
     is_unfinished_ = is_unfinished_ && meant == nullptr &&
                      is_unfinished(source_.text({head.span.begin, s.rest().end}));
     is_unknown_ = meant == nullptr;
-    if (is_unknown_ && s.peek().is("=")) declare_broken_constant(head);  // "limit = 0.5"
+    const std::string_view rest = source_.text(s.rest());
+    if (is_unknown_ && (s.peek().is("=") || rest.starts_with(":=")))
+      declare_broken_constant(head);  // "limit = 0.5"
     return meant;
   }
 

@@ -93,6 +93,7 @@ bool RuleReader::criticality(Scanner& s, syntax::Policies& policies) {
   } else if (level.has_hole) {
     policies.criticality = kError;
   } else {
+    if (read_.is_foreign_word(level, "POLICIES")) return false;
     return read_.unexpected_clause(
         level, {"ERROR", "WARNING", "NON_CRITICAL", "FAILURE", "DEGRADED", "OK"},
         "a criticality comes first: NON_CRITICAL, WARNING or ERROR");
@@ -133,6 +134,7 @@ bool RuleReader::policy(Scanner& s, syntax::Policies& policies) {
   if (clause.text == "ERROR" || clause.text == "WARNING" || clause.text == "NON_CRITICAL")
     return read_.fail(Code::kUnknownPolicy, clause.span, "a rule has one criticality",
                       "keep one of them");
+  if (read_.is_foreign_word(clause, "POLICIES", Code::kUnknownPolicy)) return false;
   return read_.unexpected_clause(clause,
                                  {"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE", "REPORT"}, "",
                                  Code::kUnknownPolicy);
@@ -188,6 +190,7 @@ bool RuleReader::strategy(Scanner& s) {
   std::optional<syntax::Expression> when;
   if (s.peek().text == "WHEN") {
     s.next();
+    if (s.peek().is(":")) return read_.fail_token(s.next(), "a condition", "");
     if (s.at_end())
       return read_.fail(Code::kSyntax, s.peek().span, "a condition is missing here",
                         "write it behind WHEN, as in WHEN speed < 0.1");
@@ -228,6 +231,7 @@ bool RuleReader::is_name_last(const Scanner& s) {
 
 bool RuleReader::strategy_ends(Scanner& s) {
   const Token& token = s.peek();
+  if (read_.is_foreign_word(token, "STRATEGY", Code::kExtraText)) return false;
   const std::string upper = upper_case(token.text);
   if (upper == "IF" || upper == "UNLESS")
     return read_.fail(Code::kExtraText, token.span, "a strategy has no " + std::string(token.text),
@@ -274,7 +278,9 @@ bool RuleReader::adaptation(Scanner& s) {
   auto adaptation = read_adaptation(read_, source_, s);
   constexpr std::string_view kEnd =
       "the impact, a number of cycles without a unit, is the last word of the line";
-  if (!adaptation || !read_.line_ends(s, kEnd)) return false;
+  if (!adaptation || read_.is_foreign_word(s.peek(), "ADAPTATION", Code::kExtraText) ||
+      !read_.line_ends(s, kEnd))
+    return false;
   adaptation->span.begin = keyword_.begin;
   rule.strategies.back().adaptations.push_back(std::move(*adaptation));
   return true;

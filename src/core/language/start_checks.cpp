@@ -124,7 +124,32 @@ std::optional<CommandFlaw> flaw_of_ros_arguments(const Words& command) {
   return std::nullopt;
 }
 
+// "systemctl --user restart camera": the unit as UNIT names it.
+std::string unit_in(const Words& command) {
+  const bool is_users = std::ranges::find(command, "--user") != command.end();
+  const std::string& last = command.back();
+  return last + (last.find('.') == std::string::npos ? ".service" : "") + (is_users ? " USER" : "");
+}
+
+// A program that another one runs: culprit would watch the wrong process.
+std::optional<CommandFlaw> flaw_of_program(const Words& command) {
+  const bool has_sudo = command.front() == "sudo" && command.size() > 1;
+  const std::string& program = command[has_sudo ? 1 : 0];
+  if (program == "systemctl")
+    return CommandFlaw{Severity::kWarning,
+                       "'systemctl' ends at once, so culprit would watch no process",
+                       "write UNIT " + unit_in(command) + " in place of LAUNCH"};
+  if (program == "docker" || program == "podman")
+    return CommandFlaw{
+        Severity::kWarning, "'" + program + "' runs the process elsewhere: in a container",
+        "write CONTAINER " + program + " and the container's name in place of LAUNCH"};
+  if (!has_sudo) return std::nullopt;
+  return CommandFlaw{Severity::kWarning, "'sudo' may ask for a password, which nobody can enter",
+                     "leave it out, or let systemd run the program: UNIT name.service"};
+}
+
 std::optional<CommandFlaw> flaw_of(const Words& command) {
+  if (auto flaw = flaw_of_program(command)) return flaw;
   const std::string& program = command.front();
   if (is_launch_file(program) && program.find('#') == std::string::npos)
     return CommandFlaw{Severity::kWarning, "a launch file is no program",

@@ -13,11 +13,25 @@ namespace {
 using syntax::Expression;
 using Kind = Expression::Kind;
 
+// "rate(/scan) < 125ms": `pause` is between two messages.
+std::string remedy_of_rate(const Expression& pause) {
+  const auto* length =
+      pause.kind == Kind::kLiteral ? std::get_if<Duration>(&*pause.literal) : nullptr;
+  const auto milliseconds =
+      length == nullptr ? 0
+                        : std::chrono::duration_cast<std::chrono::milliseconds>(*length).count();
+  constexpr std::int64_t kSecond = 1000;  // in milliseconds
+  if (milliseconds < 1 || kSecond % milliseconds != 0)
+    return "a rate is a number in Hz: write the number without a unit";
+  return "a rate is a number in Hz: one message every " + to_string(*length) + " is " +
+         std::to_string(kSecond / milliseconds) + "; age(/topic) is the time since the last one";
+}
+
 // `number`: which side of `e` is none of a duration.
 std::string unit_remedy(const Expression& e, std::size_t number) {
   const Expression& side = e.children[number];
   if (side.kind == Kind::kCall && side.name.text == "rate")
-    return "a rate is a number in Hz: write the number without a unit";
+    return remedy_of_rate(e.children[1 - number]);
   constexpr std::array<std::string_view, 5> kNumbers = {"phi", "loss", "cpu", "memory", "goals"};
   if (side.kind == Kind::kCall && std::ranges::find(kNumbers, side.name.text) != kNumbers.end())
     return side.name.text + " is a number: write the other side without a unit";

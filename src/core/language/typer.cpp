@@ -150,9 +150,9 @@ std::optional<Typed> Typer::name(const Expression& e) {
                 "write " + meant, Edit{e.span, meant});
   }
   const SignalId signal = symbols_.signal(e.name);
-  if (!is_part_of_call_) bare_.warn_of_bare_function(e);
   const auto type = symbols_.type_of(signal);
   if (!type) return unknown_type(e);
+  if (!is_part_of_call_) bare_.warn_of_bare_function(e);
   Input wanted;
   wanted.kind = Input::Kind::kSignal;
   wanted.signal = signal;
@@ -167,6 +167,10 @@ std::nullopt_t Typer::unknown_type(const Expression& e) {
   }
   if (names_broken_constant(whole_)) return std::nullopt;  // which would have told
   const std::string& name = e.name.text;
+  if (const FunctionInfo* function = find_function(name);
+      function != nullptr && symbols_.is_looked_up(name))
+    return fail(Code::kUnknownType, e.span, "'" + name + "' lacks its parentheses",
+                "usage of the function: " + std::string(function->usage));
   if (&e == &whole_ && symbols_.is_looked_up(name))
     return fail(Code::kUnknownType, e.span, "cannot infer the type of this value",
                 "a text needs quotes: write \"" + name +

@@ -64,7 +64,9 @@ std::optional<Remedy> remedy_of_symbol(const UnknownLine& line, const Token& hea
   if (written == "[")
     return Remedy{"a rule file has no sections: a rule begins with RULE and its name"};
   if (written == "<")
-    return Remedy{"a rule file has no tags: a rule begins with RULE and its name"};
+    return Remedy{
+        "a rule file has no tags: a rule begins with RULE and its name, and INCLUDE "
+        "\"common.rules\" reads another file"};
   if (head.kind == Token::Kind::kString)
     return Remedy{"begin a comment with #", Edit{{head.span.begin, head.span.begin}, "# "}};
   if (written == "..") return Remedy{"write the lines that belong here, or remove it"};
@@ -78,31 +80,33 @@ std::optional<Remedy> remedy_of_symbol(const UnknownLine& line, const Token& hea
   return std::nullopt;
 }
 
-// The remedy for a part that rules of other tools have; empty: `upper` names none.
-std::string_view remedy_of_other_part(std::string_view upper) {
-  constexpr std::string_view kText = "write # in front of it: a rule has no text of its own";
-  constexpr std::string_view kSwitch =
-      "remove the line; to switch a rule off, put # in front of its lines";
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kParts = {
-      {{"DESCRIPTION", kText},
-       {"COMMENT", kText},
-       {"NOTE", kText},
-       {"AUTHOR", kText},
-       {"ENABLED", kSwitch},
-       {"DISABLED", kSwitch},
-       {"LOG", "remove the line: culprit keeps each step in its journal"},
-       {"NOTIFY", "write REPORT on the POLICIES line, which notifies a person"},
-       {"ENDRULE", "remove the line: a rule ends where the next one begins"}}};
-  for (const auto& [word, remedy] : kParts) {
-    if (word == upper) return remedy;
-  }
-  return "";
+// "for c in [camera, lidar]:"
+bool is_loop(std::string_view upper, const Scanner& behind) {
+  if (upper == "WHILE" || upper == "FOREACH" || upper == "REPEAT" || upper == "LOOP") return true;
+  Scanner ahead = behind.ahead();
+  ahead.next();
+  return upper == "FOR" && upper_case(ahead.peek().text) == "IN";
 }
 
 std::string list_of(std::span<const std::string_view> keywords) {
   std::string list;
   for (const std::string_view word : keywords) list += " " + std::string(word);
   return list;
+}
+
+// "limit = 0.5", "limit := 0.5", "def limit = 0.5": with the word CONST; nothing: it is no such line. `behind` the head.
+std::optional<Remedy> remedy_of_assignment(const UnknownLine& line, const Token& head,
+                                           const Scanner& behind) {
+  Scanner ahead = behind.ahead();
+  const bool has_word_in_front = ahead.peek().kind == Token::Kind::kIdentifier;
+  const Token name = has_word_in_front ? ahead.next() : head;
+  if (ahead.peek().is(":")) ahead.next();
+  if (name.kind != Token::Kind::kIdentifier || !ahead.next().is("=")) return std::nullopt;
+  const std::string constant = "CONST " + std::string(name.text) + " = ";
+  const Span sign{head.span.begin, ahead.position()};
+  return Remedy{"a constant begins with CONST: write " + constant +
+                    std::string(line.source.text(ahead.rest())),
+                Edit{sign, constant}};
 }
 
 Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner& s,
@@ -114,9 +118,15 @@ Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner&
   const bool is_call = second.is("(") && second.span.begin == head.span.end;
   if (is_call && near.empty() && find_function(head.text) != nullptr)
     return remedy_of_condition(line, head);
-  if (is_call && near.empty())
+  const std::string_view rest = line.source.text(s.rest());
+  if (is_call && near.empty() && rest.find_first_of("=\"'") != std::string_view::npos)
     return {
         "a rule file is no program: a component is COMPONENT camera NODE /camera LAUNCH \"...\""};
+  if (is_call && near.empty())
+    return {"to use a TEMPLATE, write USE " + std::string(head.text) + std::string(rest),
+            Edit{in_front, "USE "}};
+  if (is_loop(upper, s))
+    return {"a rule file has no loops: write a TEMPLATE, and a USE line for each component"};
   if (upper == "WAIT" || upper == "SLEEP")
     return {"no strategy waits for a time: THEN ADAPTATION begins once the one above took effect"};
   if (upper == "AND" || upper == "OR")
@@ -124,17 +134,14 @@ Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner&
             " and the condition at the end of the TRIGGER line"};
   if (upper == "ELSE" || upper == "OTHERWISE")
     return {"remove the line: the strategies of a rule are alternatives"};
-  if (const auto remedy = remedy_of_other_part(upper); !remedy.empty() && near.empty())
+  if (const auto remedy = remedy_of_foreign_word(upper, ""); !remedy.empty() && near.empty())
     return {std::string(remedy)};
   if (const auto statement = statement_of_clause(upper); !statement.empty() && near.empty())
     return {"write it on the line of its " + std::string(statement) + ": a statement is one line"};
   if (near == "TRIGGER" && !line.is_in_rule)
     return {"write RULE and its name, then lines with POLICIES, TRIGGER, STRATEGY and ADAPTATION"};
   if (!near.empty()) return {"did you mean " + near + "?", Edit{head.span, near}};
-  if (second.is("=") && head.kind == Token::Kind::kIdentifier)
-    return {"a constant begins with CONST: write CONST " +
-                std::string(line.source.text({head.span.begin, s.rest().end})),
-            Edit{in_front, "CONST "}};
+  if (auto remedy = remedy_of_assignment(line, head, s)) return *std::move(remedy);
   constexpr std::string_view kComparisons = "< <= > >= == !=";
   const bool is_condition = second.kind == Token::Kind::kSymbol &&
                             kComparisons.find(second.text) != std::string_view::npos;
@@ -157,7 +164,9 @@ std::string meant_keyword(const UnknownLine& line, const Token& head) {
   if (std::ranges::find(line.keywords, upper) != line.keywords.end()) return upper;
   const std::string_view foreign = statement_of_other_tools(upper);
   if (!foreign.empty()) return std::string(foreign);
-  if (!statement_of_clause(upper).empty() || !place_of_number(upper).empty()) return "";
+  const bool has_remedy = !statement_of_clause(upper).empty() || !place_of_number(upper).empty() ||
+                          !remedy_of_foreign_word(upper, "").empty();
+  if (has_remedy) return "";
   return closest(upper, {line.keywords.begin(), line.keywords.end()});
 }
 
