@@ -147,6 +147,11 @@ class AnswerReader {
         return read_.fail(Code::kSyntax, next.span, "AFTER is missing before this",
                           "write AFTER in front of it",
                           Edit{{next.span.begin, next.span.begin}, "AFTER "});
+      if (const Token& next = s_.peek();
+          !cure.subjects.empty() && (next.text == "IN" || next.text == "WITHIN"))
+        return read_.fail(Code::kSyntax, next.span,
+                          "unexpected '" + std::string(next.text) + "' in front of a time",
+                          "did you mean AFTER?", Edit{next.span, "AFTER"});
       const auto name = read_.name_or_text(s_, "a topic or a signal");
       const auto subject = name ? names_.topic_or_signal(*name) : std::nullopt;
       if (!subject) return false;

@@ -123,6 +123,8 @@ class CourseReader {
 
   static std::string remedy_of_rate(const std::string& written) {
     if (written.empty()) return "a rate is written like 10Hz";
+    if (upper_case(written) == "AT" || upper_case(written).starts_with("STOP"))
+      return "write the time, a ':' and silent, as in 2s: silent";
     if (written.find_first_not_of("0123456789.") == std::string::npos)
       return "write " + written + "Hz";
     const bool has_digit = written.find_first_of("0123456789") != std::string::npos;

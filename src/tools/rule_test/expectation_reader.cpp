@@ -113,6 +113,7 @@ class ExpectationReader {
       return read_.fail(Code::kSyntax, word.span, "NOT stands behind EXPECT",
                         "write EXPECT NOT " + subject->text + " " + std::string(s_.peek().text));
     const auto fitting = verbs_of(subject->text);
+    if (is_foreign_verb(*subject, word)) return false;
     return read_.unexpected_clause(
         word, fitting,
         word.kind == Token::Kind::kEnd ? "add for example " + std::string(fitting.front())
@@ -120,6 +121,26 @@ class ExpectationReader {
             ? "of a component only blame is expected; a repair is RESOLVED of a rule, or EXECUTED "
               "of a strategy"
             : "");
+  }
+
+  // "CameraDead BLAMES camera", "CameraDead NEVER DETECTED", "again WAS EXECUTED": reported.
+  bool is_foreign_verb(const Name& subject, const Token& word) {
+    Scanner ahead = s_.ahead();
+    const Name next = ahead.next_name();
+    const std::string upper = upper_case(word.text);
+    if (const Span span{subject.span.begin, next.span.end};
+        upper.starts_with("BLAME") && fits(next.text, About::kComponent))
+      return !read_.fail(Code::kSyntax, span, "the component stands in front of BLAMED",
+                         "write " + next.text + " BLAMED FOR " + subject.text,
+                         Edit{span, next.text + " BLAMED FOR " + subject.text});
+    if (upper == "NEVER")
+      return !read_.fail(Code::kSyntax, word.span, "unexpected 'NEVER'",
+                         "write EXPECT NOT " + subject.text + " " + next.text);
+    const bool is_filler = upper == "WAS" || upper == "IS" || upper == "BE" || word.is("==");
+    return is_filler &&
+           !read_.fail(Code::kSyntax, word.span, "unexpected '" + std::string(word.text) + "'",
+                       "remove it: write EXPECT " + subject.text + " " + next.text,
+                       Edit{{word.span.begin, next.span.begin}, ""});
   }
 
   // "NOT NO STRATEGY", "BY 5s CameraDead DETECTED": reported.
@@ -256,6 +277,12 @@ class ExpectationReader {
     if (upper == "BETWEEN")
       return read_.fail(Code::kSyntax, word.span, "unexpected '" + std::string(word.text) + "'",
                         "write the two times as AFTER 1s BY 5s");
+    if (upper == "EVENTUALLY" || upper == "ALWAYS")
+      return read_.fail(Code::kSyntax, word.span, "unexpected '" + std::string(word.text) + "'",
+                        "remove it: without BY and AFTER, any time of the test counts");
+    if (upper == "ONCE" || upper == "TWICE" || word.kind == Token::Kind::kNumber)
+      return read_.fail(Code::kSyntax, word.span, "no test counts how often",
+                        "write an EXPECT line for each time, with AFTER and BY");
     if (upper == "AND")
       return read_.fail(Code::kSyntax, word.span, "one line expects one thing",
                         "write an EXPECT line for each");

@@ -34,25 +34,16 @@ const std::vector<std::string_view> kIncidents = {"KILLED", "STOPPED", "HUNG", "
 
 // The statement that other tools for tests call `upper`; empty: it is none of `known`.
 std::string statement_for(std::string_view upper, const std::vector<std::string_view>& known) {
-  constexpr auto kWords =
-      std::to_array<std::pair<std::string_view, std::string_view>>({{"ASSERT", "EXPECT"},
-                                                                    {"VERIFY", "EXPECT"},
-                                                                    {"CHECK", "EXPECT"},
-                                                                    {"SHOULD", "EXPECT"},
-                                                                    {"THEN", "EXPECT"},
-                                                                    {"WAIT", "RUN"},
-                                                                    {"TIMEOUT", "RUN"},
-                                                                    {"SLEEP", "RUN"},
-                                                                    {"DURATION", "RUN"},
-                                                                    {"LENGTH", "RUN"},
-                                                                    {"CASE", "TEST"},
-                                                                    {"SCENARIO", "TEST"},
-                                                                    {"INCLUDE", "RULES"},
-                                                                    {"NODE", "COMPONENT"},
-                                                                    {"DIAGNOSTIC", "LEVEL"},
-                                                                    {"ACTION", "GOAL"},
-                                                                    {"PARAM", "PARAMETER"},
-                                                                    {"WHEN", "AT"}});
+  constexpr auto kWords = std::to_array<std::pair<std::string_view, std::string_view>>(
+      {{"ASSERT", "EXPECT"},    {"VERIFY", "EXPECT"},   {"CHECK", "EXPECT"},
+       {"SHOULD", "EXPECT"},    {"THEN", "EXPECT"},     {"WAIT", "RUN"},
+       {"TIMEOUT", "RUN"},      {"SLEEP", "RUN"},       {"DURATION", "RUN"},
+       {"LENGTH", "RUN"},       {"CASE", "TEST"},       {"SCENARIO", "TEST"},
+       {"DEF", "TEST"},         {"IT", "TEST"},         {"DESCRIBE", "TEST"},
+       {"EVAL_TIME", "RUN"},    {"GIVEN", "COMPONENT"}, {"MOCK", "ADAPTATION"},
+       {"STUB", "ADAPTATION"},  {"INCLUDE", "RULES"},   {"NODE", "COMPONENT"},
+       {"DIAGNOSTIC", "LEVEL"}, {"ACTION", "GOAL"},     {"PARAM", "PARAMETER"},
+       {"WHEN", "AT"}});
   for (const auto& [theirs, ours] : kWords) {
     if (theirs == upper && std::ranges::find(known, ours) != known.end()) return std::string(ours);
   }
@@ -339,6 +330,16 @@ bool is_of_rules(std::string_view upper) {
   return std::ranges::find(kWords, upper) != kWords.end();
 }
 
+namespace {
+
+// A word that stands in front of all tests elsewhere.
+bool is_of_set_up(std::string_view upper) {
+  return upper == "BEFORE_EACH" || upper == "BEFOREEACH" || upper == "SETUP" ||
+         upper == "BACKGROUND" || upper == "FIXTURE";
+}
+
+}  // namespace
+
 std::string fail_unknown_statement(LineReader& read, const Source& source, const Token& head,
                                    const std::vector<std::string_view>& keywords) {
   const std::string upper = upper_case(head.text);
@@ -351,7 +352,9 @@ std::string fail_unknown_statement(LineReader& read, const Source& source, const
     near = closest(upper, keywords);
     remedy = "did you mean " + near + "?";
   }
-  if (near.empty() && head.kind == Token::Kind::kDuration) {
+  if (near.empty() && is_of_set_up(upper)) {
+    remedy = "remove the word: lines in front of the first TEST hold for every test";
+  } else if (near.empty() && head.kind == Token::Kind::kDuration) {
     remedy = "write AT in front of it";
   } else if (near.empty() && !is_of_rules(upper)) {
     remedy = "a line begins with one of";
