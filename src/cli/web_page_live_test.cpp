@@ -41,6 +41,8 @@ TEST_F(WebPage, TellsEveryStateOnEveryScreenWithoutScrolling) { passes("states.m
 
 TEST_F(WebPage, IsUsableOnEveryPage) { passes("pages.mjs"); }
 
+TEST_F(WebPage, GoesOnAfterTrouble) { passes("trouble.mjs"); }
+
 // Firefox draws, focuses, types and saves in its own way: every state, every page, and the editor.
 TEST_F(WebPage, TellsEveryStateInFirefox) { passes("states.mjs", "firefox"); }
 

@@ -27,6 +27,12 @@ export class Refusal extends Error {
   }
 }
 
+async function refusalOf(response: Response): Promise<Refusal> {
+  const answer = await response.json().catch(() => ({}))
+  const why = response.status === 401 ? 'the token is not valid: open the address that culprit printed' : answer.error
+  return new Refusal(response.status, why ?? `error ${response.status}`)
+}
+
 async function ask(path: string, init: RequestInit): Promise<Response> {
   let response: Response
   try {
@@ -35,8 +41,7 @@ async function ask(path: string, init: RequestInit): Promise<Response> {
     throw new Refusal(0, 'culprit does not answer; is it still running?')
   }
   if (response.ok) return response
-  const answer = await response.json().catch(() => ({}))
-  throw new Refusal(response.status, answer.error ?? `error ${response.status}`)
+  throw await refusalOf(response)
 }
 
 export async function call<T>(method: string, path: string, body?: unknown): Promise<T> {
@@ -71,11 +76,12 @@ export interface StreamMessage {
 const kLongestSilence = 5000 // ms, until the connection is given up
 
 // Server-sent events (WHATWG HTML). Not by EventSource, which cannot send the token. Goes on after
-// an interruption where it left off, for ever. `onSign` is called for any data that arrives, also if it is no message.
+// an interruption where it left off, for ever. `onSign` is called for any data that arrives, also if it is no message;
+// `onConnection` also gets the reason if culprit refuses the connection.
 export async function follow(
   onMessage: (message: StreamMessage) => void,
   onSign: () => void,
-  onConnection: (isConnected: boolean) => void
+  onConnection: (isConnected: boolean, why?: string) => void
 ): Promise<never> {
   let lastId = ''
   for (;;) {
@@ -86,11 +92,12 @@ export async function follow(
       clearTimeout(timer)
       timer = window.setTimeout(() => silence.abort(), kLongestSilence)
     }
+    let why = ''
     try {
       const more: Record<string, string> = lastId ? { 'Last-Event-ID': lastId } : {}
       listen()
       const response = await fetch('/api/stream', { headers: headers(more), signal: silence.signal })
-      if (!response.ok || !response.body) throw new Error(String(response.status))
+      if (!response.ok || !response.body) throw await refusalOf(response)
       onConnection(true)
       const reader = response.body.pipeThrough(new TextDecoderStream()).getReader()
       let pending = ''
@@ -111,11 +118,11 @@ export async function follow(
           if (message.data) onMessage(message)
         }
       }
-    } catch {
-      // The next attempt says the same again.
+    } catch (error) {
+      if (error instanceof Refusal) why = error.message // of other errors the next attempt says the same again
     }
     clearTimeout(timer)
-    onConnection(false)
+    onConnection(false, why)
     await new Promise((resolve) => setTimeout(resolve, 1000))
   }
 }

@@ -3,7 +3,7 @@ import { autocompletion, type CompletionContext, type CompletionResult } from '@
 import { defaultKeymap, history, historyKeymap, redo, undo } from '@codemirror/commands'
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language'
 import { type Diagnostic, lintGutter, linter } from '@codemirror/lint'
-import { EditorState, type Text } from '@codemirror/state'
+import { EditorState, StateEffect, type Text } from '@codemirror/state'
 import { EditorView, drawSelection, highlightActiveLine, hoverTooltip, keymap, lineNumbers } from '@codemirror/view'
 import { tags } from '@lezer/highlight'
 import { call, Refusal } from './api'
@@ -131,6 +131,7 @@ export interface Found {
 
 export interface Editor {
   view: EditorView
+  check(): void // anew, though the text is the same
   fix(all: Fix[]): void
   setText(text: string): void
   undo(): void
@@ -172,26 +173,31 @@ function applyAll(view: EditorView, all: Fix[]): void {
   view.focus()
 }
 
-// `onText` is called with each new text, `onFound` with the check's findings about the newest.
+const checkAnew = StateEffect.define<null>()
+
+// `onText` is called with each new text, `onFound` with the check's findings about the newest, `onCheck` after each check: with the
+// reason if there was none.
 export function makeEditor(
   parent: HTMLElement,
   text: string,
   onText: (text: string) => void,
-  onFound: (found: Found[]) => void
+  onFound: (found: Found[]) => void,
+  onCheck: (whyNot: string) => void
 ): Editor {
   let found: Found[] = []
   const check = linter(
     async (view): Promise<Diagnostic[]> => {
       const { doc } = view.state
-      // The page says that culprit is gone; when it is back, the next change is checked.
       const whole = { start: position(doc, 0), end: position(doc, doc.length) }
       const params = { range: whole, context: { diagnostics: [] } }
       const reply = await call<Reply<LspAction[] | null>>('POST', '/api/rules/ask', { text: doc.toString(), method: 'textDocument/codeAction', params }).catch((error: unknown) => {
-        if (error instanceof Refusal && error.status === 0) return null
-        throw error
+        if (!(error instanceof Refusal)) throw error
+        onCheck(error.message)
+        return null
       })
       // Answers may overtake one another: findings about an older text are dropped.
       if (!reply || !view.state.doc.eq(doc)) return []
+      onCheck('')
       const list = reply.diagnostics.map((d): Found & { to: number } => {
         const from = offset(doc, d.range.start)
         return {
@@ -214,7 +220,7 @@ export function makeEditor(
         actions: fix && [{ name: fix.title, apply: () => applyAll(view, [found[place]?.fix ?? fix]) }],
       }))
     },
-    { delay: 150 }
+    { delay: 150, needsRefresh: ({ transactions }) => transactions.some(({ effects }) => effects.some((each) => each.is(checkAnew))) }
   )
   const root = shadowRoot(parent)
   const view = new EditorView({
@@ -257,6 +263,7 @@ export function makeEditor(
   }
   return {
     view,
+    check: () => view.dispatch({ effects: checkAnew.of(null) }),
     setText(next) {
       if (next === view.state.doc.toString()) return
       view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: next } })

@@ -33,8 +33,11 @@ export function hearsState(clock: number | undefined): void {
   lastState.value = Date.now()
   if (clock !== undefined) skew.value = clock - lastState.value / 1000
 }
-export function connected(isNow: boolean): void {
+// Why culprit refuses the connection; empty: it does not, or it does not answer.
+export const refusal = signal('')
+export function connected(isNow: boolean, why = ''): void {
   isOpen.value = isNow
+  refusal.value = why
   if (isNow) {
     wasOpen.value = true
     hearsSign()

@@ -1,7 +1,7 @@
 // Past incidents from the journal, as the server lists them (docs/web.md), and the events of the selected one.
 import { batch, computed, effect, signal, untracked } from '@preact/signals'
 import { call } from './api'
-import { nowByTheClock } from './freshness'
+import { isReachable, nowByTheClock } from './freshness'
 import { can, events } from './store'
 import type { Criticality, ManagerEvent } from './types'
 
@@ -103,6 +103,10 @@ export function followIncidents(): () => void {
         void load()
       }, kSoon)
   })
+  // Once culprit is back, the page reads again, where it failed before.
+  const stopReturning = effect(() => {
+    if (isReachable.value && trouble.peek()) void load()
+  })
   const stopTelling = effect(() => {
     if (chosen.value && keyOf(chosen.value) !== told.peek().key) void loadEvents(chosen.value)
   })
@@ -110,6 +114,7 @@ export function followIncidents(): () => void {
     clearTimeout(timer)
     stopLoading()
     stopFollowing()
+    stopReturning()
     stopTelling()
   }
 }

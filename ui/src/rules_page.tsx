@@ -4,6 +4,7 @@ import { useEffect, useRef, useState } from 'preact/hooks'
 import { call, hasToken, Refusal } from './api'
 import { type Editor, type Found, makeEditor } from './editor'
 import { byTheClock } from './clock'
+import { isReachable } from './freshness'
 import { draftOf, keepDraft, type Draft } from './drafts'
 import { diff, merged } from './line_changes'
 import { Hindsight, hindsightFollows } from './hindsight'
@@ -29,7 +30,8 @@ const text = signal('')
 effect(() => hindsightFollows(text.value))
 const checked = signal<Found[] | null>(null) // nothing before the first check
 const found = computed(() => checked.value ?? [])
-const unreadable = signal('') // why there is no form of the text
+const unchecked = signal('') // why the newest text was not checked
+const unreadable = signal<Refusal | null>(null) // why there is no form of the text
 const restored = signal<Draft | null>(null) // brought back after a reload
 const theirs = signal<File | null>(null) // saved by another client meanwhile
 
@@ -41,9 +43,9 @@ async function readForm(): Promise<void> {
     const document = await call<RuleDocument>('POST', '/api/rules/json', { text: read })
     if (!isNewest(mine)) return
     accept(document, read)
-    unreadable.value = ''
+    unreadable.value = null
   } catch (error) {
-    if (isNewest(mine)) unreadable.value = (error as Refusal).message
+    if (isNewest(mine)) unreadable.value = error as Refusal
   }
 }
 
@@ -222,17 +224,25 @@ export function RulesPage() {
           keep()
           void readForm()
         },
-        (list) => (checked.value = list)
+        (list) => (checked.value = list),
+        (whyNot) => (unchecked.value = whyNot)
       )
       await readForm()
     }
     open().catch((error: Error) => tell({ text: `Opening the rules: ${error.message}`, isTrouble: true }))
+    // Once culprit is back, the page reads and checks the text again, where it failed before.
+    const stopReturning = effect(() => {
+      if (!isReachable.value || !editor.current) return
+      if (unchecked.peek()) editor.current.check()
+      if (unreadable.peek()?.status === 0) void readForm()
+    })
     const stopLooking = follow(() => text.value)
     onUndo(() => editor.current?.undo())
     addEventListener('keydown', takeBack)
     return () => {
       removeEventListener('keydown', takeBack)
       stopLooking()
+      stopReturning()
       isGone = true
       editor.current?.view.destroy()
     }
@@ -272,12 +282,14 @@ export function RulesPage() {
             ◆ {refusedFields() === 1 ? 'one field is' : `${refusedFields()} fields are`} not in the text
           </span>
         )}
-        <span class={errors > 0 ? 'sick' : checked.value ? 'well' : 'muted'} role="status">
-          {errors > 0
-            ? `◆ ${errors} ${errors > 1 ? 'errors' : 'error'}`
-            : !checked.value
-              ? '… being checked'
-              : `✓ no errors, ${found.value.length} ${found.value.length === 1 ? 'warning' : 'warnings'}`}
+        <span class={errors > 0 || unchecked.value ? 'sick' : checked.value ? 'well' : 'muted'} role="status">
+          {unchecked.value
+            ? `? not checked: ${unchecked.value}`
+            : errors > 0
+              ? `◆ ${errors} ${errors > 1 ? 'errors' : 'error'}`
+              : !checked.value
+                ? '… being checked'
+                : `✓ no errors, ${found.value.length} ${found.value.length === 1 ? 'warning' : 'warnings'}`}
         </span>
         <button type="button" aria-keyshortcuts="Control+Z" title="Ctrl-Z, also outside of the text" onClick={() => editor.current?.undo()}>
           Undo
@@ -311,7 +323,9 @@ export function RulesPage() {
       <Restored write={(next) => editor.current?.setText(next)} />
       {unreadable.value && (
         <pre class="sick unreadable" role="alert">
-          The form is off until the text can be parsed{errors > 0 ? '; the errors are listed below the text.' : `: ${unreadable.value}`}
+          {unreadable.value.status === 0
+            ? `The form is off: ${unreadable.value.message}`
+            : `The form is off until the text can be parsed${errors > 0 ? '; the errors are listed below the text.' : `: ${unreadable.value.message}`}`}
         </pre>
       )}
       <div class="sides">

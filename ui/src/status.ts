@@ -2,7 +2,7 @@
 // title of the window and in its icon.
 import { computed } from '@preact/signals'
 import { lastingSoFar, when } from './clock'
-import { freshness, nowByTheClock } from './freshness'
+import { freshness, nowByTheClock, refusal } from './freshness'
 import { type Incident, listed } from './incidents'
 import { kLooks, type Tone } from './looks'
 import { can, clockAt, control, robot, state } from './store'
@@ -73,7 +73,7 @@ export const status = computed((): Status => {
     const why = fresh.kind === 'lost' ? 'Disconnected' : 'Nothing new from culprit'
     const wasMode = (m: Mode): Mode => ({ ...m, name: 'bygone', word: `was: ${m.word.replace(/^\S /, '')}` })
     return {
-      ...told('lost', '⚠', 'Old', `${why} since ${when(fresh.since)}`, `This view is outdated.${was}`),
+      ...told('lost', '⚠', 'Old', `${why} since ${when(fresh.since)}`, refusal.value ? `${capital(refusal.value)}.` : `This view is outdated.${was}`),
       modes: modes.value.filter((m) => m.word).map(wasMode),
     }
   }
