@@ -18,7 +18,14 @@ export function byTheCalendar(clock: number): string {
 const isToday = (clock: number) => new Date(clock * 1000).toDateString() === new Date().toDateString()
 
 // With the day where it is another one than today.
-export const when = (clock: number) => (isToday(clock) ? '' : `${byTheCalendar(clock)} `) + byTheClock(clock)
+export const when = (clock: number, digits = 0) => (isToday(clock) ? '' : `${byTheCalendar(clock)} `) + byTheClock(clock, digits)
+
+// "14:00:00 to 14:05:00", with the days where it may not be clear which.
+export function fromTo(from: number, to: number): string {
+  if (isToday(from) && isToday(to)) return `${byTheClock(from)} to ${byTheClock(to)}`
+  const day = byTheCalendar(from) === byTheCalendar(to) ? '' : `${byTheCalendar(to)} `
+  return `${byTheCalendar(from)} ${byTheClock(from)} to ${day}${byTheClock(to)}`
+}
 
 // "40 ms", "0.4 s", "12 s", "3 min 5 s", "2 h 10 min": two figures are enough to act on.
 export function lasting(seconds: number): string {

@@ -1,6 +1,6 @@
 // Why: for each cause who is held responsible, what it makes fail, what was weighed and why not the others, and what
 // happens next.
-import { type Signal, signal } from '@preact/signals'
+import { type Signal, signal, untracked } from '@preact/signals'
 import { ComponentPanel } from './component_panel'
 import { byTheClock, lasting, lastingSoFar, when } from './clock'
 import { isOld, nowByTheClock } from './freshness'
@@ -9,7 +9,7 @@ import { search } from './graph_model'
 import { type Failure, healthOf, type View } from './history'
 import { type Incident, listed } from './incidents'
 import { usePaced } from './paced'
-import { signalOf, toAddress } from './plotted'
+import { type Range, signalOf, toAddress } from './plotted'
 import { isIll, kLooks, type Look, rankOf } from './looks'
 import { capital } from './status'
 import { blindRules, can, clockAt, conditionAt, culprits, graph, isLive, live, looks, now, robot, selected, state, verdict } from './store'
@@ -239,10 +239,11 @@ function Consequence({ failure, view }: { failure: Failure; view: View }) {
   )
 }
 
-const kPlotted = 300 // s
+const kPlotted = 300 // s, at least
+const kBefore = 60 // s, of the time before an incident
 
 // To the plot of what its rules read.
-function PlotLink({ rules }: { rules: string[] }) {
+export function PlotLink({ rules, range }: { rules: string[]; range: Range }) {
   if (!can('get', '/api/series')) return null
   const inputs = robot.value?.inputs ?? []
   const read = new Set((robot.value?.rules ?? []).filter((r) => rules.includes(r.name)).flatMap((r) => r.inputs))
@@ -250,10 +251,13 @@ function PlotLink({ rules }: { rules: string[] }) {
   if (names.length === 0) return null
   return (
     <p>
-      <a href={toAddress(names, { last: kPlotted })}>Plot what these rules read</a>
+      <a href={toAddress(names, range)}>Plot what these rules read</a>
     </p>
   )
 }
+
+// The time back to a while before it began.
+const sinceBefore = (incident: Incident) => Math.max(kPlotted, Math.ceil((untracked(nowByTheClock) - clockAt(incident.since) + kBefore) / kBefore) * kBefore)
 
 const isWide = matchMedia('(min-width: 901px)')
 
@@ -284,7 +288,7 @@ function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
       )}
       {root?.decision?.text && !(isLive.value && kSaidByNext.includes(root.decision.type)) && <p>{root.decision.text}.</p>}
       {view === live && <Next incident={incident} />}
-      {view === live && <PlotLink rules={[incident.rule, ...incident.consequences]} />}
+      {view === live && <PlotLink rules={[incident.rule, ...incident.consequences]} range={{ last: sinceBefore(incident) }} />}
       {consequences.length > 0 && (
         <details class="consequences">
           <summary>

@@ -5,7 +5,7 @@ import { useEffect, useRef } from 'preact/hooks'
 import { fileAt } from './api'
 import { byTheClock, lasting, when } from './clock'
 import { download } from './download'
-import { Reasons } from './explain'
+import { PlotLink, Reasons } from './explain'
 import { nowByTheClock } from './freshness'
 import { viewOf } from './history'
 import { listed } from './incidents'
@@ -146,6 +146,8 @@ function Recordings({ incident }: { incident: PastIncident }) {
   )
 }
 
+const kPlottedBefore = 30 // s, and behind it
+
 function Details({ incident }: { incident: PastIncident }) {
   const isMaking = useSignal(false)
   // Reading a recording takes a while.
@@ -174,6 +176,7 @@ function Details({ incident }: { incident: PastIncident }) {
         {incident.consequences.length > 0 && `Effects: ${listed(incident.consequences)}. `}
         {incident.over && `Outcome: ${outcomeOf(incident)}.`}
       </p>
+      <PlotLink rules={incident.rules} range={{ from: incident.clock - kPlottedBefore, to: incident.clock + lastingOf(incident) + kPlottedBefore }} />
       <Recordings incident={incident} />
       <Timeline view={view} />
       <div class="columns">

@@ -1,9 +1,10 @@
-// The result of the last order. A success disappears by itself; a failure stays until it is dismissed.
+// The result of the last order. A success disappears by itself; a failure, or a text to copy, stays until it is dismissed.
 import { signal } from '@preact/signals'
 
 export interface Notice {
   text: string
   isTrouble?: boolean
+  stays?: boolean
   undo?: () => void
 }
 
@@ -15,7 +16,7 @@ let timer = 0
 export function tell(next: Notice | null): void {
   clearTimeout(timer)
   notice.value = next
-  if (next && !next.isTrouble) timer = window.setTimeout(() => (notice.value = null), kLasting)
+  if (next && !next.isTrouble && !next.stays) timer = window.setTimeout(() => (notice.value = null), kLasting)
 }
 
 // Does it, and says what came of it.

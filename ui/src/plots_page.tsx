@@ -2,7 +2,7 @@
 // with failures and repairs as marks. The address says what is shown, so that a link shows the same to others.
 import { useEffect, useMemo, useRef } from 'preact/hooks'
 import uPlot from 'uplot'
-import { byTheClock, when } from './clock'
+import { byTheCalendar, byTheClock, fromTo, when } from './clock'
 import { download } from './download'
 import { tell } from './notices'
 import { atFirst, curveOf, curves, extent, followCurves, followPast, kindOf, kMostBack, offered, past, plotted, range, reach, show, thresholdsOf, toAddress, trouble, wordsOf } from './plotted'
@@ -45,6 +45,15 @@ function aligned(names: string[]): uPlot.AlignedData {
     return [[clocks, values.map((value) => (value === null ? null : value * scale))]]
   })
   return tables.length === 0 ? [[]] : uPlot.join(tables)
+}
+
+// With the day below the first label of each, where more than one day is shown.
+function labelsOf(clocks: number[]): string[] {
+  const { from, to } = extent()
+  const digits = clocks.length > 1 && clocks[1] - clocks[0] < 1 ? 1 : 0
+  const day = (place: number) => byTheCalendar(clocks[place])
+  const isOneDay = byTheCalendar(from) === byTheCalendar(to)
+  return clocks.map((clock, i) => byTheClock(clock, digits) + (isOneDay || (i > 0 && day(i) === day(i - 1)) ? '' : `\n${day(i)}`))
 }
 
 const figures = (value: number) => (Math.abs(value) >= 1000 ? value.toFixed(0) : String(Number(value.toPrecision(4))))
@@ -107,11 +116,11 @@ function optionsFor(names: string[], zoomTo: (from: number, to: number) => void)
     cursor: { drag: { x: true, y: false, setScale: false } },
     select: { show: true, left: 0, top: 0, width: 0, height: 0 },
     axes: [
-      { ...axisLook(), space: 96, values: (_, splits) => splits.map((clock) => byTheClock(clock, splits.length > 1 && splits[1] - splits[0] < 1 ? 1 : 0)) },
+      { ...axisLook(), space: 96, values: (_, splits) => labelsOf(splits) },
       ...units.map((unit, i): uPlot.Axis => ({ ...axisLook(), scale: unit, ...(isNarrow.value ? { size: 46 } : { label: unit, size: 62 }), side: i === 0 ? 3 : 1, ...(i === 0 ? {} : { grid: { show: false } }) })),
     ],
     series: [
-      { label: 'time', value: (_, clock) => (clock === null ? '–' : byTheClock(clock, 1)) },
+      { label: 'time', value: (_, clock) => (clock === null ? '–' : when(clock, 1)) },
       ...names.map((name, i): uPlot.Series => ({
         label: wordsOf(name),
         scale: kindOf(name).unit || 'value',
@@ -160,7 +169,7 @@ function asPicture(plot: uPlot, names: string[]): Promise<Blob | null> {
   context.font = `${15 * ratio}px system-ui, sans-serif`
   context.fillStyle = colour('text')
   const { from, to } = extent()
-  context.fillText(`${robot.value?.robot ?? ''}, ${when(from)} to ${byTheClock(to)}`, 12 * ratio, 18 * ratio)
+  context.fillText(`${robot.value?.robot ?? ''}, ${fromTo(from, to)}`, 12 * ratio, 18 * ratio)
   names.forEach((name, i) => {
     context.fillStyle = kColours[i % kColours.length]
     context.fillText(`━ ${wordsOf(name)}${kindOf(name).unit && ` [${kindOf(name).unit}]`}`, 12 * ratio, head * (i + 1) + 18 * ratio)
@@ -257,7 +266,7 @@ function Time() {
           ▶
         </button>
       </span>
-      <span class="muted">{isLive ? '' : `${when(from)} to ${byTheClock(to)}`}</span>
+      <span class="muted">{isLive ? '' : fromTo(from, to)}</span>
     </div>
   )
 }
@@ -271,7 +280,7 @@ function Exports({ plot }: { plot: { current: uPlot | null } }) {
       await navigator.clipboard.writeText(address)
       tell({ text: 'The link is copied. It shows these signals over this time.' })
     } catch {
-      tell({ text: address }) // browsers give the clipboard to secure pages only
+      tell({ text: `Copy this link: ${address}`, stays: true }) // browsers give the clipboard to secure pages only
     }
   }
   const picture = async () => {
@@ -350,7 +359,7 @@ export function PlotsPage() {
                 <span class={`tone-${event.tone}`} aria-hidden="true">
                   {kMarked[event.type]}
                 </span>{' '}
-                <time>{byTheClock(clockOf(event), 1)}</time> {event.text}
+                <time>{when(clockOf(event), 1)}</time> {event.text}
               </li>
             ))}
           </ol>

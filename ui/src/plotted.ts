@@ -23,7 +23,10 @@ const isUsage = (name: string) => /^(processor|memory) /.test(name)
 export const plotted = signal<string[]>([]) // "rate /scan", "input entropy", "memory camera"
 export const range = signal<Range>({ last: kUsual })
 export const curves = signal<Map<string, Curve>>(new Map())
-export const trouble = signal('')
+// Errors about the values in memory and about the journal: each lasts until its own next answer.
+const troubleOfCurves = signal('')
+const troubleOfPast = signal('')
+export const trouble = computed(() => troubleOfCurves.value || troubleOfPast.value)
 
 // The journal's part: of a time that is no longer in memory.
 interface Past {
@@ -148,6 +151,7 @@ async function ask(name: string): Promise<[string, Curve]> {
 
 const kSettled = 400 // ms without another choice, until the journal is read
 const kAnew = 60_000 // ms, of a time that goes on
+const kRetry = 5000 // ms, after an error
 
 // Asks for the time before the curves in memory, whenever another time or signal is chosen. Gives how to stop.
 export function followPast(): () => void {
@@ -164,10 +168,13 @@ export function followPast(): () => void {
     try {
       const answer = await call<Reach & Partial<Past>>('POST', '/api/series/past', { names, from, to: Math.min(to, kept) })
       if (isOver || own !== asked) return
+      troubleOfPast.value = ''
       reach.value = { oldest: answer.oldest, why: answer.why }
       past.value = answer.clocks ? { clocks: answer.clocks, curves: answer.curves!, events: answer.events!.map((event, i) => ({ ...event, number: -1 - i })) } : null
     } catch (error) {
-      if (!isOver) trouble.value = (error as Error).message
+      if (isOver || own !== asked) return
+      troubleOfPast.value = (error as Error).message
+      wait(kRetry)
     }
   }
   const wait = (time: number) => {
@@ -184,6 +191,7 @@ export function followPast(): () => void {
   })
   return () => {
     isOver = true
+    troubleOfPast.value = ''
     stop()
     clearTimeout(timer)
   }
@@ -200,9 +208,9 @@ export function followCurves(): () => void {
     try {
       const all = await Promise.all(wanted.map(ask))
       if (!isOver) curves.value = new Map(all)
-      trouble.value = ''
+      troubleOfCurves.value = ''
     } catch (error) {
-      if (!isOver) trouble.value = (error as Error).message
+      if (!isOver) troubleOfCurves.value = (error as Error).message
     }
     isAsking = false
     if (wanted !== plotted.peek()) return look()

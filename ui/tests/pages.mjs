@@ -249,6 +249,11 @@ async function tellsIncidents(page, server, album) {
   await decision.getByText('Without “camera exited”, fusion would be held responsible.').waitFor()
   await isAccessible(page)
   await isUsableByKeyboard(page)
+  // From it to the plots of its time.
+  const plots = new URLSearchParams((await incident.getByRole('link', { name: 'Plot what these rules read' }).getAttribute('href')).split('/').slice(1).join('/'))
+  const [from, to] = [Number(plots.get('from')), Number(plots.get('to'))]
+  expect(from < kIncidents[0].clock && to > kIncidents[0].clock + kIncidents[0].seconds && to - from < 120, `the plots are of another time: ${plots}`)
+  expect(plots.getAll('s').includes('age /fused'), `the plots are of other signals: ${plots}`)
   const send = incident.getByRole('button', { name: 'Save as a page to send …' })
   const sent = await saved(page, () => send.click())
   expect(sent.name === `incident-${kIncidents[0].id}.html`, 'the file to send has another name')

@@ -1,16 +1,26 @@
 // The page while culprit is away, refuses, or has nothing to show: it says so, claims nothing meanwhile, and goes on by itself.
 import { kIncidents, kStates, kToday, play } from './robots.mjs'
-import { expect, isAccessible, stubbed, suite } from './session.mjs'
+import { expect, expectSoon, isAccessible, stubbed, suite } from './session.mjs'
 
 const kRules = 'COMPONENT camera NODE /camera\n'
+const kDay = 86_400
+let pastTrouble = '' // why the journal cannot be read
 const kCalls = {
   'get /api/stream': () => [200, {}],
   'post /api/orders': () => [202, { number: 1, text: 'kept' }],
   'get /api/incidents': () => [200, { journal: '/var/lib/culprit/rover.journal', incidents: kIncidents }],
   'get /api/incidents/events': () => [200, { events: [] }],
+  'get /api/series': () => [200, { clocks: [], values: [] }],
+  'post /api/series/past': ({ from, to }) => (pastTrouble ? [409, { error: pastTrouble }] : [200, pastOf(from, to)]),
   'get /api/rules': () => [200, { path: 'rover.rules', text: kRules, version: '1', can_save: true }],
   'post /api/rules/json': () => [200, { version: 1, statements: [] }],
   'post /api/rules/ask': () => [200, { diagnostics: [], result: null }],
+}
+
+function pastOf(from, to) {
+  const clocks = [from, (from + to) / 2, to]
+  const mark = { type: 'failure_detected', label: 'detected', severity: 'error', tone: 'alarm', text: 'RGBDead detected in the night', rule: 'RGBDead', t: 0, clock: (from + to) / 2 }
+  return { oldest: kToday / 1000 - 2 * kDay, why: 'the journal begins then', clocks, curves: { 'rate /rgb': [1, 2, 3] }, events: [mark] }
 }
 
 const statusOf = (page) => page.getByRole('region', { name: 'Status' })
@@ -70,12 +80,45 @@ async function readsIncidentsAgain(page, server) {
   expect((await page.getByRole('alert').count()) === 0, 'an old error is still there')
 }
 
+// An error of the journal lasts as long as it is true, beside values in memory that come each second.
+async function asksTheJournalAgain(page) {
+  pastTrouble = 'another replay is running; ask again in a moment'
+  const midnight = Math.floor(kToday / 1000 / kDay) * kDay
+  await page.evaluate(() => {
+    window.drawn = new Set()
+    const { fillText } = CanvasRenderingContext2D.prototype
+    CanvasRenderingContext2D.prototype.fillText = function (...all) {
+      window.drawn.add(all[0])
+      return fillText.apply(this, all)
+    }
+  })
+  await goTo(page, `plots/s=rate+/rgb&from=${midnight - 3600}&to=${midnight + 3600}`)
+  const alert = page.getByRole('alert')
+  await alert.getByText(pastTrouble).waitFor()
+  await page.waitForTimeout(2200) // twice as long as between two looks at the memory
+  expect((await alert.count()) === 1, 'the error is gone though the journal was not read')
+  pastTrouble = ''
+  await page.getByRole('region', { name: 'Marks' }).getByText('RGBDead detected in the night').waitFor()
+  expect((await alert.count()) === 0, 'an old error is still there')
+  // Two days on one axis are told apart.
+  await page.getByText('2026-11-20 23:00:00 to 2026-11-21 01:00:00').waitFor()
+  await expectSoon(() => page.evaluate(() => window.drawn.has('2026-11-20') && window.drawn.has('2026-11-21')), 'the axis does not say which day it is')
+  // Without a clipboard, as over plain HTTP, the link can be copied by hand.
+  await page.evaluate(() => Object.defineProperty(navigator, 'clipboard', { value: undefined }))
+  await page.getByRole('button', { name: 'Copy link' }).click()
+  const notice = page.getByRole('status', { name: 'Notice' })
+  await notice.getByText('Copy this link: http://').waitFor()
+  await isAccessible(page)
+  await notice.getByRole('button', { name: 'Dismiss' }).click()
+}
+
 await suite(() =>
   stubbed(
     kCalls,
     async (page, server) => {
       await saysWhyItIsRefused(page, server)
       await readsIncidentsAgain(page, server)
+      await asksTheJournalAgain(page)
     },
     kToday
   ).then(() => stubbed(kCalls, checksAgain)) // the editor waits by the clock
