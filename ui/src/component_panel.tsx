@@ -156,7 +156,7 @@ export function ComponentPanel({ name }: { name: string }) {
     ['node', known ? `${known.node}${known.present ? '' : ', not discovered now'}` : 'not discovered'],
     ['process', now?.process ?? (now?.condition || 'unknown')],
     ['started by', facts?.owner ?? (facts && 'not known: the rules name no owner')],
-    ['computer', (now?.host ?? facts?.host) && `${now?.host ?? facts?.host}${now?.unheard ? ', which is unreachable' : ''}`],
+    ['host', (now?.host ?? facts?.host) && `${now?.host ?? facts?.host}${now?.unheard ? ', which is unreachable' : ''}`],
     ['lifecycle', now?.lifecycle],
     ['being adapted by', now?.adapting],
     ['remark', now?.remark],

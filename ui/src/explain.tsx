@@ -366,15 +366,15 @@ export function Components() {
     const nodes = new Map(graph.value.nodes.map((n) => [n.component, n.node]))
     const all = (robot.value?.components ?? []).map(({ name, node, host: own }, place): Entry => {
       const full = nodes.get(name) ?? node ?? ''
-      const computer = state.value?.components[place]?.host ?? own ?? 'this computer'
-      return { name, host: computer, space: full.slice(0, full.lastIndexOf('/')) || '/', look: looks.value.get(name) ?? 'UNTOLD', condition: conditionAt(name), isBlamed: blamed.has(name) }
+      const on = state.value?.components[place]?.host ?? own ?? 'this host'
+      return { name, host: on, space: full.slice(0, full.lastIndexOf('/')) || '/', look: looks.value.get(name) ?? 'UNTOLD', condition: conditionAt(name), isBlamed: blamed.has(name) }
     })
     return all.sort((a, b) => Number(b.isBlamed) - Number(a.isBlamed) || rankOf(a.look) - rankOf(b.look))
   }, kPeriod, () => verdict.value)
   const wanted = search.value.toLowerCase()
-  const found = entries.value.filter(
-    (e) => e.name.toLowerCase().includes(wanted) && kLevels[level.value](e.look) && (!host.value || e.host === host.value) && (!space.value || e.space === space.value)
-  )
+  const isFiltered = entries.value.length > kFewComponents // a filter that is not shown hides nothing
+  const passes = (e: Entry) => kLevels[level.value](e.look) && (!host.value || e.host === host.value) && (!space.value || e.space === space.value)
+  const found = entries.value.filter((e) => e.name.toLowerCase().includes(wanted) && (!isFiltered || passes(e)))
   const differ = (of: (entry: Entry) => string) => [...new Set(entries.value.map(of))]
   const rest = found.slice(kMostComponents)
   return (
@@ -382,7 +382,7 @@ export function Components() {
       <h2>
         <Term word="component">Components</Term>
       </h2>
-      {entries.value.length > kFewComponents && (
+      {isFiltered && (
         <div class="bar filters" role="group" aria-label="Filter the components">
           <select aria-label="Level" value={level.value} onChange={(e) => (level.value = e.currentTarget.value)}>
             {Object.keys(kLevels).map((each) => (
@@ -390,7 +390,7 @@ export function Components() {
             ))}
           </select>
           <Filter label="Namespace" chosen={space} all={differ((e) => e.space)} every="all namespaces" />
-          <Filter label="Computer" chosen={host} all={differ((e) => e.host)} every="all computers" />
+          <Filter label="Host" chosen={host} all={differ((e) => e.host)} every="all hosts" />
           <span class="muted" role="status">
             {found.length} of {entries.value.length}
           </span>
@@ -403,6 +403,7 @@ export function Components() {
           </li>
         ))}
       </ul>
+      {found.length === 0 && entries.value.length > 0 && <p class="muted">No component matches.</p>}
       {rest.length > 0 && <p class="muted others">and {rest.length} more; find them by name above the graph.</p>}
       {selected.value && <ComponentPanel key={selected.value} name={selected.value} />}
     </section>

@@ -1,10 +1,10 @@
-// Which nodes belong together: by namespace, by the container or by the computer that runs them. A large robot is looked
+// Which nodes belong together: by namespace, by the container or by the host that runs them. A large robot is looked
 // at by groups first.
 import { computed, signal } from '@preact/signals'
 import { graph, robot } from './store'
 import type { ComponentFacts, Graph } from './types'
 
-export const kGroupings = { auto: 'as it suits', none: 'nothing', namespace: 'namespace', container: 'container', host: 'computer' } as const
+export const kGroupings = { auto: 'as it suits', none: 'nothing', namespace: 'namespace', container: 'container', host: 'host' } as const
 export type Grouping = keyof typeof kGroupings
 
 const kKey = 'culprit-grouping'
@@ -39,7 +39,7 @@ export function groupOf(node: Node): string | undefined {
     case 'container':
       return facts?.container
     case 'host':
-      return facts && (node.host ?? facts.host ?? 'this computer')
+      return facts && (node.host ?? facts.host ?? 'this host')
     default:
       return undefined
   }

@@ -10,7 +10,7 @@ export interface Incident {
   rule: string // the failure that explains the others
   components: string[] // that are held responsible, or are about to be
   certain: boolean // the manager holds them responsible
-  host: string | null // the unreachable computer, where they are: it is what is wrong
+  host: string | null // the unreachable host, where they are: it is what is wrong
   consequences: string[] // rules
   needs_person: boolean
   doing?: string // at present only

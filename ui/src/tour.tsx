@@ -35,10 +35,17 @@ export function Tour() {
     element?.scrollIntoView({ block: 'nearest' })
     return () => element?.classList.remove('toured')
   }, [now, isShown])
+  // Wherever the focus is: a newcomer's is at the top of the page.
+  useEffect(() => {
+    if (!isShown) return
+    const onKey = (e: KeyboardEvent) => e.key === 'Escape' && end()
+    addEventListener('keydown', onKey)
+    return () => removeEventListener('keydown', onKey)
+  }, [isShown])
   if (!isShown) return null
   const [, title, text] = kSteps[now]
   return (
-    <section class="tour" aria-label="Tour" onKeyDown={(e) => e.key === 'Escape' && end()}>
+    <section class="tour" aria-label="Tour">
       <p aria-live="polite">
         <b>
           {title} ({now + 1} of {kSteps.length})
@@ -54,7 +61,7 @@ export function Tour() {
           {now + 1 < kSteps.length ? 'Next' : 'Done'}
         </button>
         <button type="button" onClick={end}>
-          End the tour
+          End the tour <kbd aria-hidden="true">Esc</kbd>
         </button>
       </div>
     </section>

@@ -64,8 +64,8 @@ export interface ComponentState {
   pid?: number
   lifecycle?: string
   remark?: string
-  host?: string // another computer, where its node runs or ran last
-  unheard?: boolean // nothing is heard of its computer: nobody knows what became of it
+  host?: string // another host, where its node runs or ran last
+  unheard?: boolean // its host is unreachable: nobody knows what became of it
   adapting?: string
 }
 export interface TopicState {

@@ -1,5 +1,6 @@
 // The page while culprit is away, refuses, or has nothing to show: it says so, claims nothing meanwhile, and goes on by itself.
-import { kIncidents, kStates, kToday, play } from './robots.mjs'
+import { largeRobot } from './large_robot.mjs'
+import { kIncidents, kNow, kStates, kToday, play } from './robots.mjs'
 import { expect, expectSoon, isAccessible, stubbed, suite } from './session.mjs'
 
 const kRules = 'COMPONENT camera NODE /camera\n'
@@ -112,6 +113,24 @@ async function asksTheJournalAgain(page) {
   await notice.getByRole('button', { name: 'Dismiss' }).click()
 }
 
+// A filter that is not shown hides nothing, and an empty list says why.
+async function filtersWhatItShows(page, server) {
+  server.anew()
+  const { documents, stateAt } = largeRobot(20)
+  for (const [kind, document] of Object.entries(documents)) server.tell(kind, document)
+  server.tell('state', stateAt(2, kToday / 1000))
+  await goTo(page, 'robot')
+  const components = page.getByRole('region', { name: 'Components' })
+  await components.getByLabel('Level').selectOption('well')
+  server.anew()
+  play(server, kStates.ill, kNow)
+  await components.getByRole('button', { name: 'camera' }).waitFor()
+  expect((await components.getByRole('listitem').count()) === 5, 'a filter that is not shown hides components')
+  await page.getByLabel('Find a node').fill('no such node')
+  await components.getByText('No component matches.').waitFor()
+  await page.getByLabel('Find a node').fill('')
+}
+
 await suite(() =>
   stubbed(
     kCalls,
@@ -119,6 +138,7 @@ await suite(() =>
       await saysWhyItIsRefused(page, server)
       await readsIncidentsAgain(page, server)
       await asksTheJournalAgain(page)
+      await filtersWhatItShows(page, server)
     },
     kToday
   ).then(() => stubbed(kCalls, checksAgain)) // the editor waits by the clock
