@@ -502,6 +502,24 @@ async function theKeyPauses(page, server) {
   expect(orders.join() === 'pause', `these were ordered: ${orders}`)
 }
 
+// By the words that the terminal has, too.
+async function mutesAComponent(page, server) {
+  await become(page, server, kStates.muted, 'robot')
+  await page.getByText('More control').click()
+  await page.getByText('camera is muted by ada until 14:13:22, 9 min 48 s more: the lens is cleaned').waitFor()
+  server.received.length = 0
+  await page.getByRole('combobox', { name: 'what' }).selectOption('rule RGBDead')
+  await page.getByLabel('minutes').fill('5')
+  await page.getByRole('button', { name: 'Mute', exact: true }).click()
+  await page.getByRole('button', { name: 'Unmute camera' }).click()
+  await page.getByRole('status', { name: 'Notice' }).getByText('Unmuting camera: kept').waitFor()
+  const [muted, unmuted] = server.received.filter(([call]) => call === 'post /api/orders').map(([, body]) => body)
+  expect(muted.order === 'silence' && muted.rule === 'RGBDead' && muted.seconds === 300, `this was ordered: ${JSON.stringify(muted)}`)
+  expect(unmuted.order === 'lift' && unmuted.component === 'camera', `this was ordered: ${JSON.stringify(unmuted)}`)
+  await isAccessible(page)
+  await page.getByText('More control').click()
+}
+
 // 500 nodes: from far away groups with the one that is at fault, from near its nodes, and all of it in a corner.
 async function staysUsableWhenLarge(page, server, album) {
   server.anew()
@@ -550,6 +568,7 @@ await suite(() =>
       await plotsSignals(page, server, album)
       await drawsTheMap(page, server)
       await theKeyPauses(page, server)
+      await mutesAComponent(page, server)
       await staysUsableWhenLarge(page, server, album)
       await album.end()
     },
