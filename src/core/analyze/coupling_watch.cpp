@@ -35,7 +35,7 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
   }
 }
 
-// Until when the effect is taken for an echo of `cause`, which clears now. Of two values, the next reading shows whether it is one.
+// Until when the effect is taken for an echo of `cause`, which clears now. The next reading of two values shows that.
 Time CouplingWatch::echo_of(RuleId cause, RuleId effect, Time now) const {
   const auto is_value = [&](RuleId rule) {
     return diagnose::symptom_of(rule, knowledge_) == diagnose::Symptom::kValue;

@@ -10,7 +10,7 @@
 namespace culprit::execute {
 namespace {
 
-// What the input would be if its component worked as well as one can; nothing: the input tells of no outage.
+// The value of the input while its component works as well as one can; nothing: the input tells of no outage.
 std::optional<Slot> ideal(const Input& input) {
   switch (input.kind) {
     case Input::Kind::kAge:
