@@ -22,7 +22,7 @@ class Victim {
   Victim() {
     const Bound socket = bound();
     port_ = socket.port;
-    pid_ = fork();
+    pid_ = fork_or_abort();
     while (pid_ == 0) pause();
     close(socket.descriptor);
   }

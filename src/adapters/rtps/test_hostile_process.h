@@ -18,6 +18,7 @@
 
 #include "rtps/datagram_sources.h"
 #include "rtps/test_datagram.h"
+#include "rtps/test_sockets.h"
 
 namespace culprit::ros2 {
 
@@ -191,7 +192,7 @@ class HostileProcess {
   // It sends all to each address, and then waits for `pause`.
   HostileProcess(const std::vector<Bytes>& datagrams, const std::vector<UdpAddress>& to,
                  std::chrono::milliseconds pause)
-      : pid_(fork()) {
+      : pid_(fork_or_abort()) {
     if (pid_ == 0) attack(datagrams, to, pause);
   }
   ~HostileProcess() {

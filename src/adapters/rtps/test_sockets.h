@@ -3,6 +3,7 @@
 
 #include <arpa/inet.h>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -43,10 +44,17 @@ class TestSocket {
   UdpAddress address_;
 };
 
+// fork(2), or the end of the test: kill(-1, SIGKILL) would end all processes of this user.
+inline pid_t fork_or_abort() {
+  const pid_t pid = fork();
+  if (pid < 0) std::abort();
+  return pid;
+}
+
 // A process that was forked from this one and waits, with none of its files but these.
 class TestFork {
  public:
-  explicit TestFork(int kept, int second = -1) : pid_(fork()) {
+  explicit TestFork(int kept, int second = -1) : pid_(fork_or_abort()) {
     if (pid_ != 0) return;
     const int moved = second < 0 ? -1 : fcntl(second, F_DUPFD, 1000);
     dup2(kept, 0);
