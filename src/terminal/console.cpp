@@ -33,6 +33,14 @@ std::string colour_code(Tone tone, Weight weight) {
   return fmt::format("\033[{}{}m", weight == Weight::kStrong ? "1;" : "", colour);
 }
 
+// As in `culprit run my.rules | tee log`, the output may be none.
+int first_terminal() {
+  for (const int each : {STDOUT_FILENO, STDIN_FILENO, STDERR_FILENO}) {
+    if (isatty(each) != 0) return each;
+  }
+  return -1;
+}
+
 bool is_ignored(int signal) {
   struct sigaction now {};
   return sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
@@ -95,8 +103,7 @@ void say_text(std::FILE* stream, const std::string& text) {
   std::clearerr(stream);
 }
 
-StopSignals::StopSignals(Hangup hangup)
-    : hangup_(hangup), has_terminal_(isatty(STDOUT_FILENO) != 0) {
+StopSignals::StopSignals(Hangup hangup) : hangup_(hangup), terminal_(first_terminal()) {
   ::signal(SIGPIPE, SIG_IGN);
   const sigset_t signals = awaited(hangup_);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -145,7 +152,7 @@ void StopSignals::wait() {
       if (user_) user_();
       continue;
     }
-    const bool is_terminal_gone = has_terminal_ && isatty(STDOUT_FILENO) == 0;
+    const bool is_terminal_gone = terminal_ >= 0 && isatty(terminal_) == 0;
     if (signal != SIGHUP || hangup_ == Hangup::kStops || is_terminal_gone) {
       stop();
       continue;

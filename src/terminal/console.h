@@ -72,7 +72,8 @@ class StopSignals {
   const Hangup hangup_;
   std::atomic<bool> is_over_ = false;
   std::atomic<Duration> patience_ = Duration::max();
-  const bool has_terminal_;
+  const int
+      terminal_;  // of standard input, output and error, the first that is one at the start; -1: none is
   std::atomic<bool> stopped_ = false;
   Mutex mutex_;
   std::function<void()> stop_ CULPRIT_GUARDED_BY(mutex_);

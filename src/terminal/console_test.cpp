@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -48,6 +49,35 @@ TEST(StopSignals, EndTheProgramThoughEveryThreadWaits) {
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == EXIT_FAILURE) << status;
+}
+
+// culprit run my.rules | tee log
+TEST(StopSignals, StopOnAHangupIfTheTerminalIsGoneThatOnlyTheInputWas) {
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_TRUE(terminal >= 0 && grantpt(terminal) == 0 && unlockpt(terminal) == 0);
+  const int ours = open(ptsname(terminal), O_RDWR | O_NOCTTY);
+  int output[2];
+  ASSERT_EQ(pipe(output), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(ours, STDIN_FILENO);
+    dup2(output[1], STDOUT_FILENO);
+    dup2(output[1], STDERR_FILENO);
+    close(ours);
+    close(terminal);
+    StopSignals signals(Hangup::kReloads);
+    if (::write(STDOUT_FILENO, "x", 1) != 1) _exit(2);
+    signals.wait_until_stopped();
+    _exit(0);
+  }
+  char ready = 0;
+  ASSERT_EQ(read(output[0], &ready, 1), 1);
+  close(ours);
+  close(terminal);
+  kill(child, SIGHUP);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
 }
 
 // A drill whose terminal is closed still has to undo its fault.

@@ -76,7 +76,8 @@ const Awaited::Best& Awaited::Two::without(RuleId rule) const {
 Awaited::Awaited(const Knowledge& knowledge, std::span<const RuleId> failures)
     : knowledge_(knowledge) {
   const bool is_any_new = std::any_of(failures.begin(), failures.end(), [&](RuleId rule) {
-    return knowledge.now < later(knowledge.states[rule].failing_since, 2 * kLongestEvidence);
+    return knowledge.now <
+           later(knowledge.states[rule].failing_since, kLongestEvidence + kLongestPlainEvidence);
   });
   find_past();
   if (!is_any_new && past_.empty()) return;
@@ -225,7 +226,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     if (!evidence.rule) return;
     const Time until =
         std::clamp(later(latest - lateness, evidence.within), later(latest, next_reading(evidence)),
-                   later(detected, kLongestEvidence));
+                   later(detected, std::max(kLongestEvidence, evidence.within)));
     if (until > found.until) found = {until, *evidence.rule, false};
   };
   const Duration passing = duration_of(kPassing, knowledge_.rules);

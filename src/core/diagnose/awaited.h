@@ -1,8 +1,9 @@
 // Evidence that can still come: for each failure, how long something upstream may yet prove to be its
 // cause.
 //
-//     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
-//                                                            symptom that can cause i's
+//     W_i = max_u min(b_i + E_u, d_i + M_u)                  quiet rules u upstream of i, of a
+//                                                            symptom that can cause i's; M_u is
+//                                                            kLongestEvidence, or E_u if longer
 //           l_i + one reading, the lateness and a cycle      i is an outage, u of a value of a supplier
 //                 of u, at most 3 s                          by DEPENDENCY (a rail, a hub), or of one that i
 //                                                            was seen to clear with

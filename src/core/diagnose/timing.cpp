@@ -51,6 +51,12 @@ Onset onset_of_value(RuleId rule, Time since, const Knowledge& knowledge) {
           since - lateness.least - held_at_least(rule, knowledge)};
 }
 
+// Has its next message come late already?
+bool comes_late(const SignalStore::Rhythm& rhythm, Time now) {
+  return rhythm.last && rhythm.is_steady() &&
+         now > later(rhythm.silent_since(), rhythm.gap + rhythm.gap / 8);
+}
+
 }  // namespace
 
 bool watches_a_topic(const Input& input) {
@@ -167,6 +173,7 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
   if (!may_fire(quiet, knowledge) || !knowledge.states[quiet].detection.trigger.known)
     return Duration::zero();
   Duration longest{};
+  Duration most = kLongestEvidence;
   bool reads_value = false;
   for (const InputId id : knowledge.rules[quiet].inputs) {
     const Input& input = knowledge.rules[id];
@@ -174,8 +181,10 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
       const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
       if (rhythm.last && *rhythm.last <= onset)
         longest = std::max<Duration>(longest, kSilentGaps * rhythm.gap);
-      if (input.kind == Input::Kind::kRate && rhythm.is_slow_since(onset))
+      const bool is_slow = input.kind == Input::Kind::kRate && rhythm.is_slow_since(onset);
+      if (is_slow)
         longest = std::max<Duration>(longest, later(rhythm.slowing->since, input.window) - onset);
+      if (is_slow || comes_late(rhythm, knowledge.now)) most = kLongestPlainEvidence;
     } else if (!watches_a_component(input)) {
       reads_value = knowledge.latencies.is_late(quiet);
     }
@@ -185,7 +194,7 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
         std::max(longest, reading_of(quiet, knowledge) + knowledge.latencies.reckon_with(quiet) +
                               held_at_most(quiet, knowledge));
   }
-  return std::min(longest, kLongestEvidence);
+  return std::min(longest, most);
 }
 
 bool counts_events(RuleId rule, const RuleSet& rules) {

@@ -49,8 +49,10 @@ bool tells_of_data(RuleId rule, const RuleSet& rules);
 
 // A topic counts as silent after this many of its usual gaps.
 inline constexpr int kSilentGaps = SignalStore::Rhythm::kSilentGaps;
-// Evidence that takes longer than this is not waited for.
+// Evidence that takes longer than this is not waited for; while a topic is late or slow already, evidence about it that
+// takes longer than the other.
 inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
+inline constexpr Duration kLongestPlainEvidence = std::chrono::seconds(30);
 
 // Is the topic silent at `now` for longer than it usually is? Not while its rhythm is unknown.
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
