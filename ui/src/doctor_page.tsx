@@ -155,7 +155,7 @@ export function DoctorPage() {
       {report.value && <Findings />}
       {!report.value && !isLooking.value && (
         <p class="muted">
-          Nodes that do not discover each other, and why; several nodes of one name; nodes that hang or have ended; diagnostics that report trouble. It
+          Nodes that do not discover each other, and why; several nodes of one name; nodes that hang or have exited; diagnostics that report trouble. It
           joins the robot’s network, looks, and leaves.
         </p>
       )}

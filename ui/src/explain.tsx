@@ -277,7 +277,7 @@ function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
       {root && (
         <p class="muted">
           {root.rule}: {kWords[root.criticality]}
-          {root.phase === 'exhausted' ? ', given up, ' : ' '}
+          {root.phase === 'exhausted' ? ', exhausted, ' : ' '}
           <Since failure={root} view={view} />
           {can('get', '/api/incidents') && view === live && (
             <>

@@ -29,7 +29,7 @@ const view = viewOf(
 
 export const causeOf = (incident: PastIncident) => listed(incident.causes) || incident.rules[0]
 export function outcomeOf(incident: PastIncident): string {
-  if (incident.given_up) return 'given up: a person must look'
+  if (incident.given_up) return 'exhausted: a person must look'
   if (!incident.over) return 'still open'
   if (incident.merged_into) return `part of ${incident.merged_into}`
   if (incident.lost) return 'can no longer be evaluated'

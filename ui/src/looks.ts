@@ -27,7 +27,7 @@ interface Appearance {
 
 // The worst first: so components are sorted.
 export const kLooks: Record<Look, Appearance> = {
-  EXHAUSTED: { sign: '✖', word: 'Gave up', tone: 'EXHAUSTED' },
+  EXHAUSTED: { sign: '✖', word: 'Exhausted', tone: 'EXHAUSTED' },
   ERROR: { sign: '◆', word: 'Error', tone: 'ERROR' },
   MISSING: { sign: '◇', word: 'Missing', tone: 'ERROR' },
   UNREACHABLE: { sign: '⚠', word: 'Unreachable', tone: 'WARNING' },

@@ -68,7 +68,7 @@ export function SingleRun({ result }: { result: StudyResult }) {
         }}
       >
         <label class="field wider">
-          <span>who managed</span>
+          <span>manager</span>
           <select value={String(row)} onChange={(e) => chooseRow(Number(e.currentTarget.value))}>
             {result.rows.map((each, place) => (
               <option value={String(place)}>{rowName(each)}</option>

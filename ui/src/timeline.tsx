@@ -90,7 +90,7 @@ const kNames: [string, string][] = [
   ['▼', 'started'],
   ['▽', 'would start'],
   ['✕', 'did not help'],
-  ['✖', 'given up'],
+  ['✖', 'exhausted'],
 ]
 
 // Each bar can be seen and pointed at, be it ever so short.

@@ -119,8 +119,8 @@ export const kStates = {
     cause: 'camera is down', level: 'Error', mode: 'Approval', also: ['waits for approval: redeploy camera'] },
   warning: { events: [detected(kBroken, 'SegmentationBad', 'WARNING')], control: {}, state: { SegmentationBad: { phase: 'failing', since: kBroken, attempts: 0 }, incidents: [kMinor] },
     cause: 'SegmentationBad fails', level: 'Warning', mode: 'Acting', also: ['since 14:03:22'] },
-  exhausted: { events: [...kCameraDead, chosen(false), event(kBroken + 5, 'rule_exhausted', 'exhausted', 'error', 'alarm', 'RGBDead is given up', { rule: 'RGBDead' })], control: {}, state: { ...kSuffering, RGBDead: { ...failing, phase: 'exhausted' }, incidents: cause('nothing helped', 'nothing more is tried: a person must look', { health: 'EXHAUSTED', needs_person: true }) },
-    cause: 'camera is down', level: 'Gave up', mode: 'Acting', also: ['nothing helped'] },
+  exhausted: { events: [...kCameraDead, chosen(false), event(kBroken + 5, 'rule_exhausted', 'exhausted', 'error', 'alarm', 'RGBDead is exhausted', { rule: 'RGBDead' })], control: {}, state: { ...kSuffering, RGBDead: { ...failing, phase: 'exhausted' }, incidents: cause('nothing helped', 'nothing more is tried: a person must look', { health: 'EXHAUSTED', needs_person: true }) },
+    cause: 'camera is down', level: 'Exhausted', mode: 'Acting', also: ['nothing helped'] },
   deaf: { events: [], control: { hears: false }, state: { overview: { look: 'DEAF', headline: "culprit does not receive the robot's messages", detail: 'nothing is judged, and nothing is done' } }, cause: "Culprit does not receive the robot's messages", level: 'Unknown', mode: 'Deaf' },
 }
 // A person paused culprit after a strategy that did not help: the suspects are those of now.

@@ -55,7 +55,7 @@ async function campaign(page) {
 // A run of what was found, on the timeline: who was broken, what was done, and a moment of it.
 async function run(page) {
   const single = page.getByRole('region', { name: 'Single run' })
-  await single.getByLabel('who managed').selectOption('paper, D C S, profile paper')
+  await single.getByRole('combobox', { name: 'manager' }).selectOption('paper, D C S, profile paper')
   await single.getByLabel('run, from 0').fill('0')
   await single.getByRole('button', { name: 'Play it again' }).click()
   const timeline = single.getByRole('region', { name: 'Timeline' })
@@ -97,7 +97,7 @@ async function opened(page) {
   await single.getByText('This manager reports no events').waitFor()
   const log = single.getByRole('region', { name: 'Event log' })
   await log.getByText('it inspects').waitFor()
-  await single.getByLabel('who managed').selectOption('culprit')
+  await single.getByRole('combobox', { name: 'manager' }).selectOption('culprit')
   await single.getByRole('button', { name: 'Play it again' }).click()
   await single.getByText('No rule sees a failure').waitFor()
   await log.getByText('thruster 1 fails').waitFor()

@@ -132,7 +132,7 @@ std::string recorded(const PageContent& content) {
                         content.incident.began, marks_in(content.events)};
   out += fmt::format(
       "<p>Times are seconds since {}, at {}. {} a failure was detected, {} decided, {} did not "
-      "help, {} resolved, {} given up; dashed: a limit of a rule. Where a line is interrupted "
+      "help, {} resolved, {} exhausted; dashed: a limit of a rule. Where a line is interrupted "
       "nothing came.</p>\n",
       content.whole ? "the recording began" : "the first failure was detected",
       on_clock(content.incident.began), sign_of(Mark::Kind::kDetected),

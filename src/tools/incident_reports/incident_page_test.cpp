@@ -235,7 +235,7 @@ TEST(IncidentWords, TellHowItEndedAndHowLongItTook) {
   incident.causes = {"a", "b", "c"};
   EXPECT_EQ(cause_of(incident), "a, b and c");
   incident.is_given_up = true;
-  EXPECT_EQ(outcome_of(incident), "given up: a person must look");
+  EXPECT_EQ(outcome_of(incident), "exhausted: a person must look");
   for (const auto& [seconds, text] : {std::pair{0.0, "0.0 s"},
                                       {0.0401, "40 ms"},
                                       {9.94, "9.9 s"},

@@ -15,7 +15,7 @@ std::string cause_of(const Incident& incident) {
 }
 
 std::string outcome_of(const Incident& incident) {
-  if (incident.is_given_up) return "given up: a person must look";
+  if (incident.is_given_up) return "exhausted: a person must look";
   if (!incident.is_over) return "not over";
   if (!incident.merged_into.empty()) return "part of " + incident.merged_into;
   if (incident.is_lost) return "can no longer be evaluated";
