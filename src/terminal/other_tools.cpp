@@ -106,7 +106,7 @@ std::string_view advice_about(std::string_view option, std::string_view command)
   constexpr std::string_view kRosArguments =
       "leave it out, for culprit takes no arguments of ROS; see culprit run --help";
   constexpr std::string_view kList = "write mute list";
-  constexpr std::string_view kWarnings = "write --fail-on warning";
+  constexpr std::string_view kAboutWarnings = "write --fail-on warning";
   constexpr std::string_view kLasting =
       "a pause lasts until culprit resume; culprit mute NAME --for 5min leaves one part alone";
   constexpr std::string_view kSends = "alerts only sends a test";
@@ -118,9 +118,9 @@ std::string_view advice_about(std::string_view option, std::string_view command)
   constexpr std::string_view kChecks =
       "culprit check RULES checks the file; run --dry-run only reports decisions";
   constexpr std::string_view kAtOnce = "leave it out: replay decides as fast as it can";
-  constexpr auto kAdvice = std::to_array<Advice>({{"--werror", "check", kWarnings},
-                                                  {"--warnings-as-errors", "check", kWarnings},
-                                                  {"-W", "check", kWarnings},
+  constexpr auto kAdvice = std::to_array<Advice>({{"--werror", "check", kAboutWarnings},
+                                                  {"--warnings-as-errors", "check", kAboutWarnings},
+                                                  {"-W", "check", kAboutWarnings},
                                                   {"--for", "pause", kLasting},
                                                   {"--watch", "top", "leave it out: top is live"},
                                                   {"-d", "run", kService},

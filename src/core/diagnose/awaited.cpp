@@ -1,6 +1,7 @@
 #include "diagnose/awaited.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "diagnose/touched.h"
 
@@ -234,7 +235,9 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     const Time until = fades(failure, past, passed_on);
     if (until > found.until) found = {until, past.rule.value_or(failure), true, past.component};
   };
-  for (const ComponentId c : touched_by(failure, knowledge_)) {
+  std::vector<ComponentId> about = touched_by(failure, knowledge_);
+  std::ranges::copy(watched_beside(failure, knowledge_), std::back_inserter(about));
+  for (const ComponentId c : about) {
     const auto scc = knowledge_.graph.scc_of(c);
     if (!scc) continue;
     const Place& place = places_[*scc];

@@ -231,10 +231,12 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
     const auto row = causes_[i];
     const std::vector<ComponentId> touched = touched_by(nodes_[i].rule, knowledge);
     const BitRows& from = nodes_[i].is_outage ? touching : spreading;
-    for (const ComponentId c : touched) {
+    const auto look_upstream_of = [&](ComponentId c) {
       for_each(paths.upstream(reach.place_of(c), nodes_[i].rule),
                [&](std::size_t place) { add(row, from[place]); });
-    }
+    };
+    std::ranges::for_each(touched, look_upstream_of);
+    std::ranges::for_each(watched_beside(nodes_[i].rule, knowledge), look_upstream_of);
     connect_learned(knowledge, i);
     clear(row, i);
     for_each(row, [&](std::size_t j) {

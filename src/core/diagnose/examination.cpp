@@ -18,8 +18,8 @@ std::vector<ComponentId> components_that_matter(
       all.push_back(c);
       all.insert(all.end(), others.begin(), others.end());
     }
-    const std::vector<ComponentId> ill = spreads_from(rule, knowledge);
-    all.insert(all.end(), ill.begin(), ill.end());
+    for (const auto& those : {spreads_from(rule, knowledge), watched_beside(rule, knowledge)})
+      all.insert(all.end(), those.begin(), those.end());
   };
   std::for_each(knowledge.states.active().begin(), knowledge.states.active().end(), add);
   std::for_each(knowledge.states.exhausted().begin(), knowledge.states.exhausted().end(), add);

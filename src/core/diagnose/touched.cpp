@@ -73,17 +73,24 @@ std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
   return touched;
 }
 
-std::vector<ComponentId> spreads_from(RuleId rule, const Knowledge& knowledge) {
+std::vector<ComponentId> watched_beside(RuleId rule, const Knowledge& knowledge) {
   const Rule& of = knowledge.rules[rule];
-  std::vector<ComponentId> all = touched_by(rule, knowledge);
   const bool is_mended = std::ranges::any_of(of.strategies, [&](StrategyId id) {
     return !knowledge.rules[id].is_last_resort && mends(knowledge.rules[id]);
   });
-  if (!is_mended || symptom_of(rule, knowledge) == Symptom::kOutage) return all;
-  const std::vector<ComponentId> read = publishers_read(of, knowledge);
-  const bool is_any_touched =
-      std::ranges::any_of(read, [&](ComponentId c) { return std::ranges::binary_search(all, c); });
-  if (is_any_touched) return all;
+  if (!is_mended) return {};
+  std::vector<ComponentId> read = publishers_read(of, knowledge);
+  const std::vector<ComponentId> touched = touched_by(rule, knowledge);
+  const bool is_any_touched = std::ranges::any_of(
+      read, [&](ComponentId c) { return std::ranges::binary_search(touched, c); });
+  if (is_any_touched) read.clear();
+  return read;
+}
+
+std::vector<ComponentId> spreads_from(RuleId rule, const Knowledge& knowledge) {
+  std::vector<ComponentId> all = touched_by(rule, knowledge);
+  if (symptom_of(rule, knowledge) == Symptom::kOutage) return all;
+  const std::vector<ComponentId> read = watched_beside(rule, knowledge);
   all.insert(all.end(), read.begin(), read.end());
   sort_unique(all);
   return all;

@@ -16,6 +16,9 @@ std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge);
 // Does the strategy begin a component anew, or call one of its routines (which may cycle the power of a
 // device)? If not, it only reconfigures.
 bool mends(const Strategy& strategy);
+// The publishers of what the rule reads, if it mends only others (a container, a hub): it shows the effects of what is upstream
+// of these, too. A rule that only reconfigures another component is about that one: the robot drives more slowly.
+std::vector<ComponentId> watched_beside(RuleId rule, const Knowledge& knowledge);
 // From where the failure may spread to failures of values: these, and of a bad value that is mended only
 // elsewhere (a lamp is switched on where a camera sees too little) also the component whose value it is. A
 // rule that only reconfigures another component may be about a good value: the robot drives on.

@@ -307,8 +307,22 @@ std::optional<Invalid> stays_deactivated(const Strategy& strategy, const Knowled
   return std::nullopt;
 }
 
-// Its component lives, and is not active because its group is paused, or is being brought up or down: there is
-// nothing to repair in it. A rule that reads its lifecycle says so itself. A step that leaves a paused one as it is
+// Is another rule about to bring up the group: it fires or is about to, has a strategy for that, and is not given up?
+bool is_brought_up_by_rule(const Group& group, RuleId asking, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  return std::ranges::any_of(rules.strategies, [&](const Strategy& strategy) {
+    const RuleState& state = knowledge.states[strategy.rule];
+    const bool is_true = state.detection.trigger.known && state.detection.trigger.b;
+    return strategy.rule != asking && (is_true || state.phase != RulePhase::kQuiet) &&
+           !knowledge.states.awaits_person(strategy.rule) &&
+           std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
+             return a.group && &rules[*a.group] == &group;
+           });
+  });
+}
+
+// Its component lives, and is not active because its group is paused, is being brought up or down, or is to be brought up by
+// another rule: there is nothing to repair in it. A rule that reads its lifecycle says so itself. A step that leaves a paused one as it is
 // disturbs nothing.
 std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
@@ -326,6 +340,9 @@ std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Kno
         return Invalid{a.component,
                        "is not active: its group " + group.name + " is being brought up or down",
                        true};
+      if (is_brought_up_by_rule(group, strategy.rule, knowledge))
+        return Invalid{a.component,
+                       "is not active: its group " + group.name + " is to be brought up", true};
     }
   }
   return std::nullopt;

@@ -180,7 +180,7 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
     last_resort_[strategy.rule.index] = at;
   } else {
     spend(overall_, "overall", at);
-    spend(kinds_[static_cast<std::size_t>(kind_of(strategy))], "of its kind", at);
+    spend(kinds_[static_cast<std::size_t>(execute::kind_of(strategy))], "of its kind", at);
   }
   for (const ComponentId component : strategy.components) {
     const std::string& where = rules_[component].name;
