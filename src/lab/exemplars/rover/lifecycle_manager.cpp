@@ -82,7 +82,6 @@ class LifecycleManager {
       if (auto opened = servers_.back()->open(*node_, each); !opened) return opened;
     }
     if (auto done = node_->parameters().declare(names.name, names.value); !done) return done;
-    if (auto done = node_->parameters().declare("autostart", Value(true)); !done) return done;
     auto bonds = node_->create_subscription<msg::BondStatus>("/bond", ros2::qos::kDefault,
                                                              [this](const msg::BondStatus& bond) {
                                                                for (const auto& server : servers_)

@@ -95,8 +95,6 @@ void RoverModel::make_parts() {
   defaults("base", "motor_power", true);
   defaults("camera", "exposure", 1.0);
   defaults("e_stop", "stopped", false);
-  for (const char* manager : {"lifecycle_manager_localization", "lifecycle_manager_navigation"})
-    defaults(manager, "autostart", true);
   for (std::size_t c = 0; c < parts_.size(); ++c) {
     Part& part = parts_[c];
     part.start(++last_pid_);
