@@ -123,6 +123,17 @@ void begin_with_its_process(CauseNode& failure,
   }
 }
 
+// Does a DEPENDENCY name a component of rule j as the supplier of one of rule i's? Not where j is about the mission.
+bool is_declared_supplier(RuleId j, RuleId i, const Knowledge& knowledge) {
+  const std::vector<ComponentId> suppliers = spreads_from(j, knowledge);
+  const std::vector<ComponentId> consumers = touched_by(i, knowledge);
+  return !knowledge.rules[j].policies.on_change &&
+         std::ranges::any_of(knowledge.rules.dependencies, [&](const Dependency& d) {
+           return std::ranges::count(consumers, d.consumer) > 0 &&
+                  std::ranges::count(suppliers, d.producer) > 0;
+         });
+}
+
 // Did its function never work while culprit watched?
 bool never_worked(RuleId rule, const Knowledge& knowledge) {
   return knowledge.states[rule].detection.last_false == kLongAgo;
@@ -268,7 +279,7 @@ void Causes::connect_learned(const Knowledge& knowledge, std::size_t i) {
 
 // Leaves out, by level, less critical failures of values that are only ever reconfigured. Such a
 // failure is no cause: its author finds nothing broken there, and the bad value may be old, because a
-// publisher of better values exited. With ON_CHANGE it causes nothing at all: the robot is in another
+// publisher of better values exited. A DEPENDENCY says that it is one all the same. With ON_CHANGE it causes nothing at all: the robot is in another
 // state of its mission, which may last.
 void Causes::leave_out_slight(const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
@@ -284,8 +295,10 @@ void Causes::leave_out_slight(const Knowledge& knowledge) {
   }
   for (std::size_t i = 0; i < size(); ++i) {
     if (!nodes_[i].is_rule()) continue;
-    for_each(slight[level_of(rules[nodes_[i].rule])],
-             [&](std::size_t cause) { clear(causes_[i], cause); });
+    for_each(slight[level_of(rules[nodes_[i].rule])], [&](std::size_t cause) {
+      if (!is_declared_supplier(nodes_[cause].rule, nodes_[i].rule, knowledge))
+        clear(causes_[i], cause);
+    });
   }
 }
 
