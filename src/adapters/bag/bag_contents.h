@@ -15,7 +15,8 @@ struct BagTopic {
   std::string name;      // with its leading slash, whether the recorder wrote it or not
   std::string type;      // "sensor_msgs/msg/Image", also where the recorder wrote sensor_msgs/Image
   std::string encoding;  // "cdr"; of any other, only the arrival of messages can be told
-  std::string offered_qos{};  // YAML, as the recorder wrote it; may be empty, or left out for its size
+  std::string
+      offered_qos{};  // YAML, as the recorder wrote it; may be empty, or left out for its size
 };
 
 struct BagMessage {
