@@ -4,6 +4,7 @@
 
 #include "diagnose/awaited.h"
 #include "diagnose/causes.h"
+#include "diagnose/touched.h"
 #include "knowledge/ambiguity.h"
 
 namespace culprit {
@@ -40,7 +41,8 @@ Time CouplingWatch::echo_of(RuleId cause, RuleId effect, Time now) const {
   const auto is_value = [&](RuleId rule) {
     return diagnose::symptom_of(rule, knowledge_) == diagnose::Symptom::kValue;
   };
-  if (is_value(effect) && is_value(cause)) return now;
+  const bool is_mended = diagnose::is_mended(effect, knowledge_.rules);
+  if (is_value(effect) && (is_value(cause) || !is_mended)) return now;
   const Time over = diagnose::recovered(cause, gone_since(cause, now), knowledge_);
   return diagnose::echo_ends(effect, cause, over, duration_of(diagnose::kPassing, knowledge_.rules),
                              knowledge_);

@@ -264,10 +264,11 @@ Awaiting Awaited::awaiting(RuleId failure) const {
 
 Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {
   // One reading of a common monitor shows both values: it decides whether the failure settles
-  // (Settling).
+  // (Settling). A reconfiguration would not be in vain for long.
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
-  const bool has_echo = !is_value || past.symptom == Symptom::kOutage ||
-                        knowledge_.latencies.is_late(failure) ||
+  const bool is_of_outage =
+      past.symptom == Symptom::kOutage && is_mended(failure, knowledge_.rules);
+  const bool has_echo = !is_value || is_of_outage || knowledge_.latencies.is_late(failure) ||
                         counts_events(failure, knowledge_.rules);
   const Onset onset = onset_of(failure, knowledge_);
   const std::optional<RuleId> cause = past.component ? std::nullopt : past.rule;

@@ -60,6 +60,12 @@ bool mends(const Strategy& strategy) {
   });
 }
 
+bool is_mended(RuleId rule, const RuleSet& rules) {
+  return std::ranges::any_of(rules[rule].strategies, [&](StrategyId id) {
+    return !rules[id].is_last_resort && mends(rules[id]);
+  });
+}
+
 std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
   const Rule& of = knowledge.rules[rule];
   std::vector<ComponentId> touched;
@@ -75,10 +81,7 @@ std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
 
 std::vector<ComponentId> watched_beside(RuleId rule, const Knowledge& knowledge) {
   const Rule& of = knowledge.rules[rule];
-  const bool is_mended = std::ranges::any_of(of.strategies, [&](StrategyId id) {
-    return !knowledge.rules[id].is_last_resort && mends(knowledge.rules[id]);
-  });
-  if (!is_mended) return {};
+  if (!is_mended(rule, knowledge.rules)) return {};
   std::vector<ComponentId> read = publishers_read(of, knowledge);
   const std::vector<ComponentId> touched = touched_by(rule, knowledge);
   const bool is_any_touched = std::ranges::any_of(
