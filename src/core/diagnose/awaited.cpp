@@ -267,7 +267,7 @@ Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {
   // (Settling). A reconfiguration would not be in vain for long.
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
   const bool is_of_outage =
-      past.symptom == Symptom::kOutage && is_mended(failure, knowledge_.rules);
+      !past.component && past.symptom == Symptom::kOutage && is_mended(failure, knowledge_.rules);
   const bool has_echo = !is_value || is_of_outage || knowledge_.latencies.is_late(failure) ||
                         counts_events(failure, knowledge_.rules);
   const Onset onset = onset_of(failure, knowledge_);

@@ -87,9 +87,19 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
   }
   for (const RuleId rule : imminent)
     add_ill(rule, onset_now(rule, knowledge.now, knowledge).latest);
+  const auto outage = static_cast<std::size_t>(Symptom::kOutage);
+  // No age shows that a topic has become slow.
+  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
+    const auto& rhythm = knowledge.signals.rhythm(TopicId(t));
+    if (!rhythm.slowing || rhythm.slowing->over != rhythm.last) continue;
+    const auto publisher = knowledge.graph.only_publisher(knowledge.rules[TopicId(t)]);
+    if (!publisher) continue;
+    Signs& of = signs[publisher->index];
+    of.has_ill[outage] = true;
+    of.ill_since[outage] = std::max(of.ill_since[outage], rhythm.slowing->since);
+  }
   for (std::size_t c = 0; c < signs.size(); ++c) {
     if (!troubles[c]) continue;
-    const auto outage = static_cast<std::size_t>(Symptom::kOutage);
     signs[c].has_ill[outage] = true;
     signs[c].ill_since[outage] = std::max(signs[c].ill_since[outage], troubles[c]->onset.latest);
   }

@@ -52,6 +52,22 @@ std::vector<ComponentId> publishers_read(const Rule& rule, const Knowledge& know
   return all;
 }
 
+// Those of `touched` that publish what the rule reads and that one of its strategies mends.
+std::vector<ComponentId> mended_publishers(const Rule& rule,
+                                           const std::vector<ComponentId>& touched,
+                                           const Knowledge& knowledge) {
+  std::vector<ComponentId> all = publishers_read(rule, knowledge);
+  std::erase_if(all, [&](ComponentId c) {
+    return !std::ranges::binary_search(touched, c) ||
+           std::ranges::none_of(rule.strategies, [&](StrategyId id) {
+             return std::ranges::any_of(knowledge.rules[id].adaptations, [&](const Adaptation& a) {
+               return a.component == c && (a.type == AdaptationType::kRestart || launches(a));
+             });
+           });
+  });
+  return all;
+}
+
 }  // namespace
 
 bool mends(const Strategy& strategy) {
@@ -76,7 +92,8 @@ std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
   if (touched.empty() && of.components.empty()) return publishers_read(of, knowledge);
   if (touched.empty()) return of.components;
   sort_unique(touched);
-  return touched;
+  std::vector<ComponentId> own = mended_publishers(of, touched, knowledge);
+  return own.empty() ? touched : own;
 }
 
 std::vector<ComponentId> watched_beside(RuleId rule, const Knowledge& knowledge) {

@@ -85,10 +85,17 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
     if (adaptation.type != AdaptationType::kRedeploy ||
         !is_at_work(knowledge.components[component]))
       continue;
-    // Its own outage, or one without any publisher, speaks against it.
+    // Its own outage, one of what a DEPENDENCY says it carries, or one without any publisher, speaks against it.
+    const auto carries = [&](ComponentId consumer) {
+      return std::ranges::any_of(rules.dependencies, [&](const Dependency& d) {
+        return d.producer == component && d.consumer == consumer;
+      });
+    };
     const bool is_suspect = std::any_of(silent->begin(), silent->end(), [&](TopicId topic) {
+      const auto publisher = knowledge.graph.only_publisher(rules[topic]);
       return knowledge.graph.publishes(component, rules[topic]) ||
-             knowledge.graph.publisher_count(rules[topic]) == 0;
+             knowledge.graph.publisher_count(rules[topic]) == 0 ||
+             (publisher && carries(*publisher));
     });
     const auto heard = is_suspect ? std::nullopt : knowledge.heard_topic(component, now);
     if (heard)
