@@ -12,6 +12,7 @@ bool reconfigures(const Adaptation& adaptation) {
     case AdaptationType::kDeactivate:
     case AdaptationType::kStart:
     case AdaptationType::kStop:
+    case AdaptationType::kCall:  // which may reset what works
       return false;
     case AdaptationType::kActivate:
     case AdaptationType::kSetParameter:
@@ -19,7 +20,6 @@ bool reconfigures(const Adaptation& adaptation) {
     case AdaptationType::kDecreaseParameter:
     case AdaptationType::kChangeCommunication:
     case AdaptationType::kChangeMode:
-    case AdaptationType::kCall:
     case AdaptationType::kStartGroup:
       break;
   }

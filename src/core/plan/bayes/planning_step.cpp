@@ -8,6 +8,7 @@
 
 #include "base/invariant.h"
 #include "diagnose/questions.h"
+#include "diagnose/touched.h"
 #include "plan/also_ended.h"
 #include "plan/ties.h"
 
@@ -259,13 +260,13 @@ void PlanningStep::revive() {
   }
 }
 
-// Before something is taken down, those upstream that may hang are asked. It goes on waiting in the
+// Before something is taken down or called, those upstream that may hang are asked. It goes on waiting in the
 // place that it was chosen for: nothing that it stands against is begun meanwhile.
 void PlanningStep::await_answers() {
   for (WeighedCandidate* weighed : best_first_) {
     const Strategy& strategy = knowledge_.rules[weighed->candidate.strategy];
-    const bool has_to_wait =
-        !weighed->candidate.excluded && !weighed->only_revives && takes_down(strategy);
+    const bool has_to_wait = !weighed->candidate.excluded && !weighed->only_revives &&
+                             (takes_down(strategy) || diagnose::mends(strategy));
     if (!has_to_wait) continue;
     Questions questions =
         questions_about(causes_[weighed->failure].rule, found_.troubles(), knowledge_);
