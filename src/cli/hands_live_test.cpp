@@ -163,7 +163,7 @@ TEST_F(Hands, AreToldWhenACulpritThatIsStoppedDoesNotAnswer) {
               (own_folder() / "culprit").string() + " top --domain " + environment("ROS_DOMAIN_ID"),
               "/dev/null"});
   EXPECT_TRUE(top.prints("q ends, p pauses culprit")) << top.output();
-  EXPECT_TRUE(top.prints("two_cameras: ") && top.prints("all is well")) << top.output();
+  EXPECT_TRUE(top.prints("two_cameras: ") && top.prints("[paused]")) << top.output();
   EXPECT_EQ(ended({"top"}).code, 2) << "there is no terminal";
 }
 

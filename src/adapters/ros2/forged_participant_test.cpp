@@ -10,6 +10,7 @@
 #include "ros2/live_test.h"
 #include "ros2/process_finder.h"
 #include "ros2/test_forger.h"
+#include "rtps/test_sockets.h"
 
 namespace culprit::ros2 {
 namespace {
