@@ -58,7 +58,7 @@ async function approve(page, program) {
 }
 
 async function reload(page) {
-  await page.getByRole('link', { name: 'Rules' }).click()
+  await page.getByRole('link', { name: 'Rules', exact: true }).click()
   const percent = page.getByRole('group', { name: 'Strategy camera_redeploy' }).getByLabel('helps in %')
   await percent.fill('70')
   await percent.press('Tab')
@@ -143,7 +143,7 @@ async function send(page) {
 
 // Before a rule is saved: what it would have done when the camera died.
 async function hindsight(page) {
-  await page.getByRole('link', { name: 'Rules' }).click()
+  await page.getByRole('link', { name: 'Rules', exact: true }).click()
   const form = page.getByRole('region', { name: 'Form' })
   const rule = form.getByLabel('rule', { exact: true })
   await rule.fill('CameraDead')
