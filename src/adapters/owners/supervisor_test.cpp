@@ -351,7 +351,7 @@ int a_child_of(int launcher) {
 TEST(Supervisor, TellsHowALauncherEndedAndWhetherItRanOthers) {
   for (const bool runs_others : {false, true}) {
     Supervised c("sleep 1000");
-    const std::string others = runs_others ? "sleep 1 & " : "";
+    const std::string others = runs_others ? "sleep 30 & " : "";
     const auto launcher =
         spawn({{"sh", "-c", others + "sleep 1000 & wait $!; exit 0"}, {}, "/dev/null"});
     ASSERT_TRUE(launcher);

@@ -1,6 +1,7 @@
 // A stranger that speaks in the name of a robot's node, on the same machine and for real: the
 // effect on the node.
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "rtps/datagram_sources.h"
 #include "rtps/origins.h"
 #include "rtps/test_hostile_process.h"
+#include "rtps/udp_sockets.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -47,12 +49,16 @@ struct Robot {
     }
     return false;
   }
-  // Those of the domain's first participants (RTPS 2.3 §9.6.1). The kernel's table does not tell: it passes over sockets while
-  // others are closed.
-  static std::vector<std::uint16_t> ports(const TestDomain& domain) {
+  // Those that participants of this machine have (RTPS 2.3 §9.6.1). One reading of the kernel's table may pass over some
+  // (udp_sockets.h).
+  static std::set<std::uint16_t> ports(const TestDomain& domain) {
     const std::uint32_t first = 7400 + 250 * domain.number();
-    std::vector<std::uint16_t> all{static_cast<std::uint16_t>(first)};
-    for (std::uint32_t i = 10; i < 18; ++i) all.push_back(static_cast<std::uint16_t>(first + i));
+    std::set<std::uint16_t> all;
+    for (int reading = 0; reading < 10; ++reading) {
+      for (const std::uint16_t port : bound_udp_ports()) {
+        if (port >= first && port < first + 250) all.insert(port);
+      }
+    }
     return all;
   }
   std::vector<Bytes> farewells() {

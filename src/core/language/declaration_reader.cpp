@@ -25,6 +25,15 @@ bool is_clause_far(const Scanner& s, std::span<const std::string_view> clauses) 
          closest(upper, {clauses.begin(), clauses.end()}).empty();
 }
 
+// "STALE 2s" or "RANGE 0..1", and not a parameter of that name?
+bool is_clause_of_signal(const Scanner& s) {
+  if (s.peek().text != "STALE" && s.peek().text != "RANGE") return false;
+  Scanner ahead = s.ahead();
+  ahead.next();
+  const Token& value = ahead.peek();
+  return value.is("-") || (value.kind != Token::Kind::kIdentifier && !ahead.at_end());
+}
+
 }  // namespace
 
 bool DeclarationReader::robot(Scanner& s) {
@@ -365,7 +374,7 @@ bool DeclarationReader::is_apart(const Scanner& s) {
 
 // "PARAMETER gain", "PARAMETER camera STALE 2s": reported.
 bool DeclarationReader::lacks_one_of_both(const Scanner& s, const Name& written) {
-  if (!s.at_end() && s.peek().text != "STALE" && s.peek().text != "RANGE") return false;
+  if (!s.at_end() && !is_clause_of_signal(s)) return false;
   const bool is_component =
       written.text.starts_with('/') ||
       std::ranges::any_of(into_.components,
