@@ -70,7 +70,7 @@ void print_findings(const RuleSet& rules, const LiveInventory& robot) {
   for (const std::string& line : live_checks::findings(rules, robot)) fmt::print("  {}\n", line);
 }
 
-// Looks up the robot's names that the files refer to.
+// Looks up the robot's names that the files refer to. An error says why they are not compared.
 Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait) {
   std::vector<Checked> checked;
   for (const Expansion& file : files) checked.push_back(check(file));
@@ -78,6 +78,7 @@ Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait)
   for (const Checked& each : checked) {
     if (each.rules) named.push_back(&*each.rules);
   }
+  if (named.empty()) return Error{"no file without errors is left to be compared with the robot"};
   auto survey = live::open_survey();
   if (!survey) return Error{survey.error()};
   LiveInventory robot = live::look_for(named, **survey, wait);
@@ -138,13 +139,14 @@ void check_emptiness(const Expansion& file, Checked& checked) {
 int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& options) {
   const Strictness strictness = options.strict ? Strictness::kStrict : Strictness::kLenient;
   std::optional<LiveInventory> robot;
+  std::string uncompared;  // why
   if (options.robot) {
     auto seen = look(all, from_seconds(options.wait_seconds));
-    if (!seen) {
-      fmt::print(stderr, "culprit: {}\n", seen.error());
-      return kFailed;
+    if (seen) {
+      robot = std::move(*seen);
+    } else {
+      uncompared = seen.error();
     }
-    robot = std::move(*seen);
   }
   const bool is_any_large = std::ranges::any_of(
       all, [](const Expansion& file) { return file.source.text().size() >= kLarge; });
@@ -171,8 +173,9 @@ int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& opt
   }
   if (options.format == "json") fmt::print("{}\n", to_text(json_report(files)));
   if (options.format == "sarif") fmt::print("{}\n", to_text(sarif_report(files)));
+  if (!uncompared.empty()) exit_code = fail(uncompared);  // behind the mistakes
   // With a robot DDS was there, which ends as it wants to.
-  if (is_any_large && !robot) end_program(exit_code);
+  if (is_any_large && !options.robot) end_program(exit_code);
   return exit_code;
 }
 

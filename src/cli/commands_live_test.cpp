@@ -134,6 +134,14 @@ RULE CameraSlow
   EXPECT_EQ(alone.wait(), 1) << "there is no robot yet";
   EXPECT_THAT(alone.output(), HasSubstr("ROS_DOMAIN_ID"));
 
+  const std::string broken =
+      world.write("broken.rules", "COMPONENT camera\nRULE R\n  POLICIES ERROR\n");
+  auto uncompared = culprit({"check", "--robot", broken});
+  EXPECT_EQ(uncompared.wait(), 1);
+  EXPECT_THAT(uncompared.output(),
+              testing::AllOf(HasSubstr("error["), HasSubstr("no file without errors"),
+                             Not(HasSubstr("no nodes were seen"))));
+
   const TestProgram camera(world, {"sunset-node", "camera"});
   auto right = culprit({"check", "--robot", good});
   EXPECT_EQ(right.wait(), 0);

@@ -252,7 +252,7 @@ TEST(ProvenHealth, WhatIsTriedAnewAfterAPauseIsSoAcrossACrashOfCulprit) {
   TestRobot robot = robot_that_is_well(20s);
   robot["camera"].fault = "a person";
   const Time end = robot.now + 60s;
-  while (robot.count("all are tried again after a pause") == 0 && robot.now < end)
+  while (robot.count("they are tried again after a back-off") == 0 && robot.now < end)
     robot.run_for(100ms);
   const std::size_t before = robot.count("camera is held responsible");
   ASSERT_EQ(before, 2u) << transcript(robot);
@@ -260,7 +260,7 @@ TEST(ProvenHealth, WhatIsTriedAnewAfterAPauseIsSoAcrossACrashOfCulprit) {
   const Time last = robot.now + 60s;
   while (robot.count("camera is held responsible") == before && robot.now < last)
     robot.run_for(100ms);
-  EXPECT_EQ(robot.count("no strategy helped for long"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("each strategy has been tried lately"), 1u) << transcript(robot);
   robot.run_for(60s);
   EXPECT_EQ(robot.count("camera is held responsible"), 4u) << transcript(robot);
 }
@@ -275,7 +275,7 @@ TEST(ProvenHealth, WhatWasProvenWellAcrossACrashIsNotHeldAgainstTheNextFailure) 
   robot["camera"].fault = "redeploy";
   robot.run_for(5s);
   EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 2u) << transcript(robot);
-  EXPECT_EQ(robot.count("no strategy helped for long"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("each strategy has been tried lately"), 0u) << transcript(robot);
 }
 
 // As the paper has it; what its studies are run with.
