@@ -80,11 +80,11 @@ TEST(Restarts, BeyondTheirBoundAnOrderThatFailsLeavesTheFailureToThePerson) {
   robot.kill("camera");
   robot.run_for(60s);
   ASSERT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
-  const std::size_t promised = robot.count("tried again after a pause");
+  const std::size_t promised = robot.count("tried again after a back-off");
   robot.order({1, "Ann", "", RunStrategy{StrategyId(0)}});
   robot.run_for(30s);
   ASSERT_EQ(robot.count("redeploy did not resolve CameraDead"), 2u) << transcript(robot);
-  EXPECT_EQ(robot.count("tried again after a pause"), promised) << transcript(robot);
+  EXPECT_EQ(robot.count("tried again after a back-off"), promised) << transcript(robot);
   EXPECT_EQ(robot.manager().knowledge().states[RuleId(0)].phase, RulePhase::kExhausted)
       << transcript(robot);
   robot["camera"].dies_at_start = false;
