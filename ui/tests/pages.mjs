@@ -347,14 +347,14 @@ async function guidesNewcomers(page, server) {
   await page.getByRole('tooltip').getByText('The component whose fault explains the failures.').waitFor()
   await isAccessible(page)
   await page.keyboard.press('Escape')
-  expect((await page.getByRole('tooltip').count()) === 0, 'the tooltip does not close')
+  await expectSoon(async () => (await page.getByRole('tooltip').count()) === 0, 'the tooltip does not close')
   expect((await tour.count()) === 0, 'the tour begins again')
   await page.evaluate(() => (location.hash = 'help'))
   for (const end of [() => tour.getByRole('button', { name: 'End the tour' }).click(), () => page.keyboard.press('Escape')]) {
     await page.getByRole('button', { name: 'Start the tour' }).click()
     await tour.getByText('(1 of 6)').waitFor()
     await end()
-    expect((await tour.count()) === 0, 'the tour does not end')
+    await expectSoon(async () => (await tour.count()) === 0, 'the tour does not end')
     await page.evaluate(() => (location.hash = 'help'))
   }
 }
