@@ -98,7 +98,8 @@ class Describer {
     return e.succeeded ? e.what + " again" : "cannot be undone: " + e.what;
   }
   std::string operator()(const RoundSpent& e) const {
-    return rules_[e.rule].name + ": each strategy has been tried lately; they are tried again after a back-off";
+    return rules_[e.rule].name +
+           ": each strategy has been tried lately; they are tried again after a back-off";
   }
   std::string operator()(const RuleExhausted& e) const {
     const Rule& rule = rules_[e.rule];
