@@ -174,9 +174,9 @@ double busy(const Costs& costs, double pool) {
 double milliseconds_of_status(const TestPostgres& postgres) {
   constexpr int kTimes = 10;
   Postgres reader = postgres.connect();
-  (void)make_report(reader, "", status_queries({}));
+  (void)fleet_reports::make_report(reader, "", fleet_reports::status_queries({}));
   const auto begin = std::chrono::steady_clock::now();
-  for (int i = 0; i < kTimes; ++i) (void)make_report(reader, "", status_queries({}));
+  for (int i = 0; i < kTimes; ++i) (void)fleet_reports::make_report(reader, "", fleet_reports::status_queries({}));
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
              .count() /
          kTimes;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "base/invariant.h"
 #include "diagnose/imminent.h"
@@ -123,15 +124,13 @@ void begin_with_its_process(CauseNode& failure,
   }
 }
 
-// Does a DEPENDENCY name a component of rule j as the supplier of one of rule i's? Not where j is about the mission.
-bool is_declared_supplier(RuleId j, RuleId i, const Knowledge& knowledge) {
-  const std::vector<ComponentId> suppliers = spreads_from(j, knowledge);
-  const std::vector<ComponentId> consumers = touched_by(i, knowledge);
-  return !knowledge.rules[j].policies.on_change &&
-         std::ranges::any_of(knowledge.rules.dependencies, [&](const Dependency& d) {
-           return std::ranges::count(consumers, d.consumer) > 0 &&
-                  std::ranges::count(suppliers, d.producer) > 0;
-         });
+// The pairs of consumer and producer that a DEPENDENCY names, ascending.
+std::vector<std::pair<ComponentId, ComponentId>> declared_pairs(const RuleSet& rules) {
+  std::vector<std::pair<ComponentId, ComponentId>> all;
+  all.reserve(rules.dependencies.size());
+  for (const Dependency& d : rules.dependencies) all.emplace_back(d.consumer, d.producer);
+  std::ranges::sort(all);
+  return all;
 }
 
 // Did its function never work while culprit watched?
@@ -279,8 +278,8 @@ void Causes::connect_learned(const Knowledge& knowledge, std::size_t i) {
 
 // Leaves out, by level, less critical failures of values that are only ever reconfigured. Such a
 // failure is no cause: its author finds nothing broken there, and the bad value may be old, because a
-// publisher of better values exited. A DEPENDENCY says that it is one all the same. With ON_CHANGE it causes nothing at all: the robot is in another
-// state of its mission, which may last.
+// publisher of better values exited. A DEPENDENCY says that it is one all the same. With ON_CHANGE it
+// causes nothing at all: the robot is in another state of its mission, which may last.
 void Causes::leave_out_slight(const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   BitRows slight(kLevels, size());
@@ -293,11 +292,22 @@ void Causes::leave_out_slight(const Knowledge& knowledge) {
     for (std::size_t level = is_mission ? 0 : level_of(rules[rule]) + 1; level < kLevels; ++level)
       set(slight[level], j);
   }
+  const auto declared = declared_pairs(rules);
+  std::vector<std::vector<ComponentId>> suppliers(size());  // of what may be left out
+  const auto is_declared = [&](std::size_t j, const std::vector<ComponentId>& consumers) {
+    if (declared.empty() || rules[nodes_[j].rule].policies.on_change) return false;
+    if (suppliers[j].empty()) suppliers[j] = spreads_from(nodes_[j].rule, knowledge);
+    return std::ranges::any_of(consumers, [&](ComponentId consumer) {
+      return std::ranges::any_of(suppliers[j], [&](ComponentId producer) {
+        return std::ranges::binary_search(declared, std::pair(consumer, producer));
+      });
+    });
+  };
   for (std::size_t i = 0; i < size(); ++i) {
     if (!nodes_[i].is_rule()) continue;
+    const std::vector<ComponentId> consumers = touched_by(nodes_[i].rule, knowledge);
     for_each(slight[level_of(rules[nodes_[i].rule])], [&](std::size_t cause) {
-      if (!is_declared_supplier(nodes_[cause].rule, nodes_[i].rule, knowledge))
-        clear(causes_[i], cause);
+      if (has(causes_[i], cause) && !is_declared(cause, consumers)) clear(causes_[i], cause);
     });
   }
 }

@@ -92,6 +92,7 @@ std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
   if (touched.empty() && of.components.empty()) return publishers_read(of, knowledge);
   if (touched.empty()) return of.components;
   sort_unique(touched);
+  if (touched.size() == 1) return touched;
   std::vector<ComponentId> own = mended_publishers(of, touched, knowledge);
   return own.empty() ? touched : own;
 }
