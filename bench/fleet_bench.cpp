@@ -176,7 +176,8 @@ double milliseconds_of_status(const TestPostgres& postgres) {
   Postgres reader = postgres.connect();
   (void)fleet_reports::make_report(reader, "", fleet_reports::status_queries({}));
   const auto begin = std::chrono::steady_clock::now();
-  for (int i = 0; i < kTimes; ++i) (void)fleet_reports::make_report(reader, "", fleet_reports::status_queries({}));
+  for (int i = 0; i < kTimes; ++i)
+    (void)fleet_reports::make_report(reader, "", fleet_reports::status_queries({}));
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
              .count() /
          kTimes;

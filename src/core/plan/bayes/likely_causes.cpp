@@ -25,6 +25,17 @@ bool only_revives(const Strategy& strategy, const Knowledge& knowledge) {
                      [&](ComponentId c) { return is_known_down(c, knowledge); });
 }
 
+namespace {
+
+Time last_question(const Knowledge& knowledge) {
+  Time last = kLongAgo;
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c)
+    last = std::max(last, knowledge.components[ComponentId(c)].questioned.at);
+  return last;
+}
+
+}  // namespace
+
 LikelyCauses::LikelyCauses(const Knowledge& knowledge, const Examination& found,
                            std::span<const RuleId> failures)
     : knowledge_(knowledge),
@@ -32,6 +43,7 @@ LikelyCauses::LikelyCauses(const Knowledge& knowledge, const Examination& found,
       causes_(found.causes()),
       diagnosis_(found.diagnosis()),
       unheard_(all_unheard()),
+      last_question_(last_question(knowledge)),
       chances_(causes_.size()) {
   for (const RuleId rule : failures)
     chances_[causes_.index_of(rule)] = strategy_chances(rule, knowledge_);
@@ -201,7 +213,9 @@ std::vector<Suspect> LikelyCauses::suspects(std::size_t failure) const {
     suspects.push_back(std::move(suspect));
   }
   // Also of those that are no suspects, because they answered.
-  std::ranges::move(answers_about(rule, knowledge_), std::back_inserter(suspects.front().evidence));
+  if (last_question_ >= onset_of(rule, knowledge_).latest)
+    std::ranges::move(answers_about(rule, knowledge_),
+                      std::back_inserter(suspects.front().evidence));
   return suspects;
 }
 

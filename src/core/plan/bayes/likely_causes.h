@@ -55,9 +55,10 @@ class LikelyCauses {
 
   const Knowledge& knowledge_;
   const diagnose::Examination& found_;
-  const diagnose::Causes& causes_;                    // of found_
-  const diagnose::Diagnosis& diagnosis_;              // likewise
-  std::vector<std::optional<ComponentId>> unheard_;   // by node
+  const diagnose::Causes& causes_;                   // of found_
+  const diagnose::Diagnosis& diagnosis_;             // likewise
+  std::vector<std::optional<ComponentId>> unheard_;  // by node
+  const Time last_question_;  // to any component; most plans are made where nothing was asked
   std::vector<std::vector<StrategyChance>> chances_;  // by node
 };
 
