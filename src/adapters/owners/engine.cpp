@@ -261,7 +261,8 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
   return state;
 }
 
-// The engine keeps its last events. It sends one for a stop, once the container has ended, and none for a kill.
+// The engine keeps its last events. It sends one for a stop, once the container has ended, and none for a kill. A restart is a
+// stop and a start: a stop before the last start is not the one that ended it.
 bool Engine::was_told_to_stop(const std::string& container) {
   constexpr std::int64_t kMomentAgo = 30;  // seconds
   constexpr std::int64_t kNanoseconds = 1'000'000'000;
@@ -272,11 +273,12 @@ bool Engine::was_told_to_stop(const std::string& container) {
                           "/events?since=" + std::to_string(now / kNanoseconds - kMomentAgo) +
                               "&until=" + std::to_string(now / kNanoseconds) + "." + part +
                               "&filters=%7B%22container%22:%5B%22" + container +
-                              "%22%5D,%22event%22:%5B%22stop%22%5D%7D",
+                              "%22%5D,%22event%22:%5B%22start%22,%22stop%22%5D%7D",
                           kPatience);
   if (!answer || answer->status != 200) return false;
-  const Json first = parse_json(answer->body.substr(0, answer->body.find('\n')));
-  return member<std::string>(first, "Action") == "stop";
+  const std::string all = answer->body.substr(0, answer->body.find_last_not_of("\r\n") + 1);
+  const Json last = parse_json(all.substr(all.rfind('\n') + 1));
+  return member<std::string>(last, "Action") == "stop";
 }
 
 Expected<void> Engine::change(const std::string& container, const std::string& what,

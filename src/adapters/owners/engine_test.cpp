@@ -124,11 +124,24 @@ TEST_F(ContainersOnAStandInForDocker, ThatAStopHadToKillAreToldAsAnOrder) {
   engine.start("slam");
   for (const int looks = engine.looks(); engine.looks() < looks + 2;)
     std::this_thread::sleep_for(1ms);
-  engine.add("slam", {.status = "exited", .code = 137, .was_told_to_stop = true});
+  engine.add("slam", {.status = "exited", .code = 137, .events = {"start", "stop"}});
   const auto seen = wait_for<ProcessSeen>(
       [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen->cause, Cause::kOrder);
+}
+
+// The engine sends the event of a stop for its restart, too.
+TEST_F(ContainersOnAStandInForDocker, ThatAreKilledSoonAfterARestartAreNotToldAsAnOrder) {
+  const int old = engine.start("slam");
+  ASSERT_EQ(stop(old).outcome, Outcome::kDone);
+  for (const int looks = engine.looks(); engine.looks() < looks + 2;)
+    std::this_thread::sleep_for(1ms);
+  end(engine.pid_of("slam"));
+  const auto seen = wait_for<ProcessSeen>(
+      [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->cause, Cause::kUnknown);
 }
 
 // Signals are how somebody stops it on purpose, too.

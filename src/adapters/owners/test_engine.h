@@ -21,7 +21,8 @@ struct TestContainer {
   std::string status = "created";
   int pid = 0;
   int code = 0;
-  bool was_told_to_stop = false;  // as `docker stop` does, and `docker kill` does not
+  std::vector<std::string>
+      events{};  // "start", and "stop" as of `docker stop`, not of `docker kill`
   std::vector<std::string> command{"sleep", "300"};
 };
 
@@ -50,6 +51,7 @@ class TestEngine {
   std::string answer_to(const std::string& method, const std::string& target)
       CULPRIT_REQUIRES(mutex_);
   std::string look_at(const std::string& name) CULPRIT_REQUIRES(mutex_);
+  std::string events(const std::string& target) CULPRIT_REQUIRES(mutex_);
   void run(TestContainer& container);
   void end(TestContainer& container);
   void notice(TestContainer& container);
