@@ -190,6 +190,7 @@ void Supervisor::adopt(ComponentId component, int pid, Time known) {
 }
 
 void Supervisor::adopt_again(ComponentId component, int pid, Time known) {
+  if (pid == 0) return;
   const bool has_ended = state_letter(pid).value_or('X') == 'Z';
   if (!has_ended && was_there(pid, known)) return adopt(component, pid, known);
   const MutexLock lock(mutex_);

@@ -134,7 +134,8 @@ class Supervisor {
   void adopt(ComponentId component, int pid, Time known);
 
   // As adopt(), for a process that an earlier run of culprit knew, if it is not a zombie now.
-  // Reports nothing if another process of the component is watched.
+  // Reports nothing if another process of the component is watched, or if it was not known (`pid` 0): one on another
+  // computer may run on.
   void adopt_again(ComponentId component, int pid, Time known);
 
   // Whether all processes of the component that run were started here, or by a supervisor of the

@@ -1149,6 +1149,15 @@ TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
   EXPECT_FALSE(exists(*foreign));
 }
 
+// Its node ran on another computer, or in a container.
+TEST(Supervisor, AProcessThatWasNeverKnownDidNotEndUnseen) {
+  Supervised c("sleep 1000");
+  c.supervisor->adopt_again(ComponentId(0), 0, live_now());
+  std::vector<Observation> seen;
+  c.inbox.take(live_now(), seen);
+  EXPECT_TRUE(seen.empty());
+}
+
 TEST(Supervisor, AProcessThatBeganLaterIsAnother) {
   Supervised c("sleep 1000");
   const auto stranger = spawn({{"sleep", "1000"}, {}, "/dev/null", {}});
