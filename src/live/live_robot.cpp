@@ -1,9 +1,11 @@
 #include "live/live_robot.h"
 
 #include <algorithm>
+#include <set>
 #include <system_error>
 
 #include "base/environment.h"
+#include "journal/requests.h"
 #include "live/launch.h"
 #include "owners/proc.h"
 
@@ -118,6 +120,7 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
     if (appeared == nullptr) continue;
     const auto component = binding_.bind(appeared->node);
     if (!component || appeared->pid == 0) continue;
+    elsewhere_.runs_here(*component, appeared->pid);
     supervisor_->adopt(*component, appeared->pid, observations[i].at);
     units_.found(*component, appeared->pid);
   }
@@ -209,6 +212,14 @@ void LiveRobot::adopt_again(ComponentId component, int pid, Time known) {
   supervisor_->adopt_again(component, pid, known);
   if (pid != 0 && !rules_[component].node.empty()) link_->note_proven_here(rules_[component].node);
   composed_->remember(component, pid);
+}
+
+void LiveRobot::remember_hosts(const KnownRobot& known) {
+  std::set<ComponentId> done;
+  for (auto part = known.parts.rbegin(); part != known.parts.rend(); ++part) {
+    const auto component = journal::find_component(rules_, part->component);
+    if (component && done.insert(*component).second) elsewhere_.remember(*component, part->host);
+  }
 }
 
 void LiveRobot::withdraw_doubles(const std::function<bool(ComponentId)>& may) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "inbox/inbox.h"
+#include "knowledge/known_robot.h"
 #include "link/link.h"
 #include "live/running_elsewhere.h"
 #include "owners/component_containers.h"
@@ -44,6 +45,9 @@ class LiveRobot : public Robot {
 
   // The component ran in this process at `known`, in an earlier run of culprit.
   void adopt_again(ComponentId component, int pid, Time known);
+
+  // On which computers components ran last, in an earlier run of culprit. The last part of a component counts.
+  void remember_hosts(const KnownRobot& known);
 
   // Ends the process that culprit started if another launcher runs the component, too: two nodes of one name are worse than either. Both must be proven, and no
   // other component may end with it that has no other process. `may`: whether anything may be done to the component now.

@@ -230,6 +230,7 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
                         const SeenSoFar* before, std::vector<Order> orders) {
   RunBeginning beginning = look_back();
   add(beginning.known_robot, known_robot);
+  robot_->remember_hosts(beginning.known_robot);
   inherit(beginning);
   hold(beginning);
   for (const std::string& finding : beginning.findings)
@@ -310,6 +311,7 @@ void LiveSession::begin(Handover before) {
   beginning.learned = std::move(before.learned);
   beginning.orders = frame_.orders.orders();
   add(beginning.known_robot, before.known_robot);
+  robot_->remember_hosts(beginning.known_robot);
   add(beginning.past, before.verdicts);
   manage(std::move(beginning), std::move(before.orders), std::move(before.occasion));
 }

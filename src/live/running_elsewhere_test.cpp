@@ -43,6 +43,28 @@ TEST_F(Elsewhere, WhatWasStartedFromHereEndsHere) {
   EXPECT_EQ(host(), "");
 }
 
+// The process of a node in Python ends after its node has left the graph.
+TEST_F(Elsewhere, ANodeThatAPersonMovedRunsThereAlsoOnceItsProcessHereHasEnded) {
+  elsewhere.runs_here(kCamera, 7);
+  see(ProcessSeen{kCamera, ProcessState::kRunning, 7, ""});
+  see(LivesOn{kCamera, "rover2"});
+  see(ProcessSeen{kCamera, ProcessState::kGone, 7, "exit code 0", Cause::kWish});
+  EXPECT_EQ(host(), "rover2");
+  elsewhere.runs_here(kCamera, 8);
+  EXPECT_EQ(host(), "");
+}
+
+TEST_F(Elsewhere, WhatAnEarlierRunSawCountsUntilThisOneSeesIt) {
+  elsewhere.remember(kCamera, "rover2");
+  EXPECT_EQ(host(), "rover2");
+  elsewhere.runs_here(kCamera, 7);
+  elsewhere.remember(kCamera, "rover2");
+  EXPECT_EQ(host(), "");
+  see(LivesOn{kCamera, "rover3"});
+  elsewhere.remember(kCamera, "rover2");
+  EXPECT_EQ(host(), "rover3");
+}
+
 TEST_F(Elsewhere, ANodeWithAnUnknownProcessOnThisComputerRunsHere) {
   see(LivesOn{kCamera, "desk"});
   EXPECT_EQ(host(), "");

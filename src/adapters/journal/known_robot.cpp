@@ -38,6 +38,7 @@ Json to_json(const KnownRobot& known) {
       }
     }
     if (part.pid != 0) component["process"] = part.pid;
+    if (!part.host.empty()) component["host"] = part.host;
     json["components"].push_back(std::move(component));
   }
   return json;
@@ -63,7 +64,8 @@ KnownRobot known_robot_from_json(const Json& json) {
     KnownRobot::Part part{text_of(each, "name"),
                           text_of(each, "node"),
                           {},
-                          static_cast<int>(integer_of(each, "process"))};
+                          static_cast<int>(integer_of(each, "process")),
+                          text_of(each, "host")};
     for (const auto& [kind, key] : kKinds)
       for_each_text(each, key, [&, kind = kind](std::string name) {
         part.ends.push_back({kind, std::move(name)});

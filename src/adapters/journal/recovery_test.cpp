@@ -114,7 +114,7 @@ struct ExpectedRobot : testing::Test {
       body = to_json(session);
     } else if (kind == kind::kRobot) {
       KnownRobot known;
-      known.parts = {{"camera", "/camera", {}, 77}};
+      known.parts = {{"camera", "/camera", {}, 77, "rover2"}};
       known.topics = known.heard = {"/image"};
       known.read = {"signal hot"};
       known.is_whole = told.is_whole;
@@ -145,6 +145,7 @@ TEST_F(ExpectedRobot, IsWhatTheLastRunSawAMomentAgo) {
   EXPECT_THAT(recovery.known_robot.read, ElementsAre("signal hot"));
   ASSERT_EQ(recovery.known_robot.parts.size(), 1u);
   EXPECT_EQ(recovery.known_robot.parts[0].pid, 77);
+  EXPECT_EQ(recovery.known_robot.parts[0].host, "rover2");
 }
 
 TEST_F(ExpectedRobot, IsNoneOfAnotherDomainOrAnotherStartOfTheMachine) {

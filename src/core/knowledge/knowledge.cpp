@@ -118,7 +118,8 @@ KnownRobot Knowledge::known_robot() const {
     const ComponentId component(c);
     if (!discovered.has(component)) continue;
     known.parts.push_back({rules[component].name, graph.node_name(component),
-                           graph.ends_of(component), components[component].node_pid});
+                           graph.ends_of(component), components[component].node_pid,
+                           components[component].host});
   }
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
     if (discovered.has(TopicId(t))) known.topics.push_back(rules.label(TopicId(t)));

@@ -24,6 +24,7 @@ struct KnownRobot {
     std::string node;
     std::vector<End> ends;
     int pid = 0;  // the process of this machine that its node was in; 0: not known, or it ended
+    std::string host{};  // the other computer that its node ran on last, as ComponentState::host
     bool operator==(const Part&) const = default;
   };
   std::vector<Part> parts;

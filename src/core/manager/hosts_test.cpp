@@ -211,6 +211,25 @@ TEST(Hosts, WhatAPersonMovesToAnotherOneStaysDownNoMore) {
   EXPECT_FALSE(two.robot.was_asked("lamp: start process")) << transcript(two.robot);
 }
 
+// The next culprit may begin while the computer is out of reach.
+TEST(Hosts, AreKnownToTheNextCulpritUntilANodeIsHere) {
+  TwoComputers two;
+  two.begin();
+  const KnownRobot known = two.robot.manager().knowledge().known_robot();
+  Manager::Options options = TwoComputers::options();
+  options.start = two.robot.now;
+  Manager next(two.robot.rules(), std::make_unique<BayesPlanner>(), options);
+  next.remember(known);
+  const ComponentId camera = two.robot.id("camera");
+  const ComponentStates& components = next.knowledge().components;
+  EXPECT_EQ(components[camera].host, "rover2");
+  EXPECT_EQ(components[two.robot.id("lamp")].host, "");
+  EXPECT_EQ(next.knowledge().known_robot().parts.at(camera.index).host, "rover2");
+  const Observation here{two.robot.now, NodeAppeared{"/camera", 4711}};
+  next.step(two.robot.now, {&here, 1});
+  EXPECT_EQ(components[camera].host, "");
+}
+
 // It may get round the computer: once, and that it did not help says nothing.
 TEST(Hosts, MayBeGotRoundOnce) {
   TwoComputers two(std::string(kHostRules) + R"(

@@ -199,6 +199,7 @@ void Monitor::remember(const KnownRobot& known) {
     const ComponentId id(static_cast<std::size_t>(component - components.begin()));
     see(id, start_);
     write_.graph.remember(id, part.ends);
+    write_.components[id].host = part.host;
   }
   for (const std::string& name : known.topics) {
     for (std::size_t t = 0; t < knowledge_.rules.topics.size(); ++t) {

@@ -55,6 +55,7 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
   see(*component, at);
+  if (seen.pid != 0) on(at, LivesOn{*component, ""});
   ComponentState& state = write_.components[*component];
   const bool was_in_graph = state.in_graph;
   const bool joins_part = had_part && !was_in_graph && seen.pid == state.node_pid;
