@@ -12,6 +12,15 @@ bool brings_back(const Strategy& strategy, ComponentId component) {
                      [&](const Adaptation& a) { return a.component == component && launches(a); });
 }
 
+// Is the component a member of a group that the strategy brings up, and out of work with it?
+bool brings_up(const Strategy& strategy, ComponentId component, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[component];
+  return state.alive == true && state.lifecycle != Lifecycle::kActive &&
+         std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
+           return a.group && a.component == component;
+         });
+}
+
 bool may_bring_back(RuleId rule, ComponentId component, const Knowledge& knowledge) {
   const auto& strategies = knowledge.rules[rule].strategies;
   return std::any_of(strategies.begin(), strategies.end(), [&](StrategyId id) {
@@ -88,7 +97,9 @@ bool makes_true(const Strategy& strategy, const Program& when, const Knowledge& 
 bool makes_possible(const Strategy& strategy, const Strategy& waiting, const Invalid& why,
                     const Knowledge& knowledge) {
   if (awaits_when(waiting, knowledge)) return makes_true(strategy, waiting.when, knowledge);
-  return knowledge.components[why.component].alive == false && brings_back(strategy, why.component);
+  return brings_up(strategy, why.component, knowledge) ||
+         (knowledge.components[why.component].alive == false &&
+          brings_back(strategy, why.component));
 }
 
 bool awaits_valid_strategy(const Decision& decision, const Knowledge& knowledge) {

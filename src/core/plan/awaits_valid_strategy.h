@@ -19,7 +19,7 @@ namespace culprit::plan {
 bool awaits_valid_strategy(const Decision& decision, const Knowledge& knowledge);
 
 // Would `strategy` make `waiting` possible, which is invalid now (`why`)? It brings back the component that is
-// down, or makes the WHEN true.
+// down, brings up the group with which the component is out of work, or makes the WHEN true.
 bool makes_possible(const Strategy& strategy, const Strategy& waiting, const Invalid& why,
                     const Knowledge& knowledge);
 

@@ -50,5 +50,23 @@ TEST(MakesPossible, WhatMakesTheWhenTrueOrBringsBackWhatIsDown) {
   EXPECT_FALSE(makes("Arm.off", "Driver.gentle"));
 }
 
+TEST(MakesPossible, WhatBringsUpTheGroupOfWhatIsNotActive) {
+  Scene scene(
+      "COMPONENT manager NODE /manager LAUNCH \"manager\"\n"
+      "COMPONENT arm NODE /arm LAUNCH \"arm\"\n"
+      "COMPONENT hand NODE /hand LAUNCH \"hand\"\n"
+      "GROUP both { arm, hand } MANAGER manager\n"
+      "RULE Both\nPOLICIES ERROR\nTRIGGER both == \"inactive\"\n"
+      "STRATEGY start 50 10\nADAPTATION both start_group 2\n"
+      "RULE Arm\nPOLICIES ERROR\nTRIGGER y > 1\n"
+      "STRATEGY again 50 10\nADAPTATION arm redeploy 2\n");
+  const Strategy& start = scene.rules()[scene.strategy("Both.start")];
+  const Strategy& again = scene.rules()[scene.strategy("Arm.again")];
+  const Invalid paused{again.components.front(), "its group is paused", true};
+  EXPECT_FALSE(makes_possible(start, again, paused, *scene)) << "the arm is active";
+  scene->components[scene.component("arm")].lifecycle = Lifecycle::kInactive;
+  EXPECT_TRUE(makes_possible(start, again, paused, *scene));
+}
+
 }  // namespace
 }  // namespace culprit::plan

@@ -307,14 +307,32 @@ std::optional<Invalid> stays_deactivated(const Strategy& strategy, const Knowled
   return std::nullopt;
 }
 
-// Is another rule about to bring up the group: it fires or is about to, has a strategy for that, and is not given up?
+// Does the rule act, or will it soon? One that has not begun for so long is held back: by a person, by the governor, or because
+// it waits itself for the failure that asks.
+bool acts_soon(RuleId rule, const Knowledge& knowledge) {
+  constexpr Duration kSoon = diagnose::kLongestEvidence;
+  const RuleState& state = knowledge.states[rule];
+  const Detection& seen = state.detection;
+  switch (state.phase) {
+    case RulePhase::kQuiet:
+      return seen.trigger.known && seen.trigger.b && diagnose::may_fire(rule, knowledge) &&
+             later(seen.trigger_since, knowledge.rules[rule].policies.hold_for) <=
+                 later(knowledge.now, kSoon);
+    case RulePhase::kFailing:
+      return knowledge.now < later(state.failing_since, kSoon);
+    case RulePhase::kAttempting:
+      return true;
+    case RulePhase::kExhausted:
+      return false;
+  }
+  return false;
+}
+
+// Is another rule about to bring up the group?
 bool is_brought_up_by_rule(const Group& group, RuleId asking, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   return std::ranges::any_of(rules.strategies, [&](const Strategy& strategy) {
-    const RuleState& state = knowledge.states[strategy.rule];
-    const bool is_true = state.detection.trigger.known && state.detection.trigger.b;
-    return strategy.rule != asking && (is_true || state.phase != RulePhase::kQuiet) &&
-           !knowledge.states.awaits_person(strategy.rule) &&
+    return strategy.rule != asking && acts_soon(strategy.rule, knowledge) &&
            std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
              return a.group && &rules[*a.group] == &group;
            });

@@ -200,10 +200,10 @@ bool ReasonsToWait::opens_way_for(StrategyId id, std::size_t cause) const {
   const RuleId rule = causes_[cause].rule;
   const std::vector<StrategyChance>& all = likely_.chances(cause);
   if (knowledge_.states[rule].attempt || knowledge_.states.awaits_person(rule)) return false;
-  return std::ranges::all_of(all,
-                             [](const StrategyChance& each) { return each.invalid.has_value(); }) &&
+  return std::ranges::all_of(all, [](const StrategyChance& each) { return each.is_out(); }) &&
          std::ranges::any_of(all, [&](const StrategyChance& each) {
-           return makes_possible(knowledge_.rules[id], knowledge_.rules[each.strategy],
+           return each.invalid &&
+                  makes_possible(knowledge_.rules[id], knowledge_.rules[each.strategy],
                                  *each.invalid, knowledge_);
          });
 }
