@@ -59,9 +59,9 @@ class Recent {
   std::vector<incident_reports::Incident> incidents() const {
     incident_reports::IncidentReader reader;
     for (const auto& [number, event] : events_) {
-      if (text_of(event, "type") == "reloaded") reader.cut();
-      reader.add({static_cast<std::int64_t>(number), event.value("clock", 0.0),
-                  event.value("t", 0.0), event});
+      const double wall = event.value("clock", 0.0);
+      if (text_of(event, "type") == "reloaded") reader.cut(wall);
+      reader.add({static_cast<std::int64_t>(number), wall, event.value("t", 0.0), event});
     }
     std::vector<incident_reports::Incident> all = reader.incidents();
     std::ranges::stable_sort(all, incident_reports::comes_before);

@@ -26,6 +26,11 @@ std::string id_of_beginning(double began) {
   return id;
 }
 
+void cut_off(Incident& incident, double until) {
+  incident.is_cut = incident.is_over = true;
+  incident.seconds = std::max(incident.seconds, until - incident.began);
+}
+
 void add_to(std::vector<std::string>& names, const std::string& name) {
   if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
 }

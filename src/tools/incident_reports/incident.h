@@ -49,6 +49,9 @@ bool comes_before(const Incident& a, const Incident& b);
 // An id of a beginning, in seconds since 1970, as journals of older culprits have it: "mywpiwzf".
 std::string id_of_beginning(double began);
 
+// It lasted at least until `until`, in seconds since 1970, and nobody saw its end.
+void cut_off(Incident& incident, double until);
+
 void add_to(std::vector<std::string>& names, const std::string& name);
 Criticality criticality_of(const Json& event);
 

@@ -126,8 +126,8 @@ void IncidentReader::close(const Told& told, const std::string& id) {
   open_.erase(found);
 }
 
-void IncidentReader::cut() {
-  for (const auto& [id, open] : open_) all_[open.place].is_cut = all_[open.place].is_over = true;
+void IncidentReader::cut(double until) {
+  for (const auto& [id, open] : open_) cut_off(all_[open.place], until);
   open_.clear();
   detected_.clear();
   losses_.clear();

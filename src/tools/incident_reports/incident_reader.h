@@ -19,8 +19,9 @@ namespace culprit::incident_reports {
 class IncidentReader {
  public:
   void add(const Told& told);
-  // From here on another manager tells: it opens what is still wrong anew.
-  void cut();
+  // From here on another manager tells: it opens what is still wrong anew. The one before was there
+  // until `until`, in seconds since 1970; 0: unknown.
+  void cut(double until);
 
   // In the order of their beginnings; those that are not over last.
   const std::vector<Incident>& incidents() const { return all_; }

@@ -95,6 +95,16 @@ Expected<Names> names_at(const Reader& journal, std::int64_t row) {
   return names;
 }
 
+// When a run of culprit was last there, in seconds since 1970: by the row before `session`, with
+// which the next run begins. 0: unknown.
+Expected<double> last_sign_before(const Reader& journal, std::int64_t session) {
+  const auto row = journal.entry(session - 1);
+  if (!row) return Error{row.error()};
+  // The next run writes of what is missing, before it begins.
+  if (!*row || (*row)->kind == journal::kind::kGap) return 0.0;
+  return kNanosecond * static_cast<double>((*row)->at);
+}
+
 struct Built {
   IncidentReader told;
   OlderIncidents older;
@@ -114,8 +124,10 @@ Expected<Built> build(const Reader& journal, std::int64_t from) {
   for (; more && *more; more = rows->next(entry)) {
     if (entry.kind == journal::kind::kSession) {
       names->begin(entry.body);
-      built.older.cut();
-      if (!names->goes_on()) built.told.cut();
+      const auto until = last_sign_before(journal, entry.id);
+      if (!until) return Error{until.error()};
+      built.older.cut(*until);
+      if (!names->goes_on()) built.told.cut(*until);
     }
     if (entry.kind != journal::kind::kEvent || !is_telling(entry.body)) continue;
     const Json event = parse_json(entry.body);

@@ -254,6 +254,28 @@ TEST_F(JournalIncidents, ThatCulpritDidNotSeeTheEndOfAreCut) {
   EXPECT_NE(all[0].id, all[1].id);
 }
 
+// The failure of a dry run stays: its last event comes early, and culprit watches it until Ctrl-C.
+TEST_F(JournalIncidents, ThatAreCutLastedUntilTheLastSignOfTheirRun) {
+  const auto stopped = [&](double after) {
+    add(journal::kind::kEnd, after, {{"text", "culprit was asked to stop"}});
+  };
+  session(0);  // of an older culprit
+  detected(10, "CameraDead");
+  chosen(10.8, "CameraDead", "replace");
+  stopped(25);
+  session(100, 1);
+  incident(110, "incident_opened", "a-000", "CameraDead", {}, "camera", 0);
+  chosen(110.8, "CameraDead", "replace");
+  stopped(130);
+  session(200, 1);
+  const auto all = since(0);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_TRUE(all[0].is_cut);
+  EXPECT_NEAR(all[0].seconds, 20, 1e-3);
+  EXPECT_TRUE(all[1].is_cut);
+  EXPECT_NEAR(all[1].seconds, 15, 1e-3);
+}
+
 TEST_F(JournalIncidents, OfNothingAreNone) { EXPECT_THAT(since(0), IsEmpty()); }
 
 // Rows come from a file: what is no event says nothing.

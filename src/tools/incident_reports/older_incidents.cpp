@@ -95,8 +95,8 @@ void OlderIncidents::end() {
   losses_.clear();
 }
 
-void OlderIncidents::cut() {
-  if (!failing_.empty()) all_.back().is_cut = all_.back().is_over = true;
+void OlderIncidents::cut(double until) {
+  if (!failing_.empty()) cut_off(all_.back(), until);
   failing_.clear();
   losses_.clear();
 }

@@ -20,8 +20,9 @@ using ComponentsOf =
 class OlderIncidents {
  public:
   void add(const Told& told, const ComponentsOf& components_of);
-  // From here on another manager tells: what is still wrong, it finds anew.
-  void cut();
+  // From here on another manager tells: what is still wrong, it finds anew. The one before was there
+  // until `until`, in seconds since 1970; 0: unknown.
+  void cut(double until);
 
   // In the order of their beginnings; the last may last.
   const std::vector<Incident>& incidents() const { return all_; }
