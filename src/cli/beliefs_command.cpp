@@ -14,6 +14,7 @@
 #include "cli/journal_file.h"
 #include "journal/session.h"
 #include "journal/writer.h"
+#include "knowledge/event_words.h"
 
 namespace culprit::cli {
 namespace {
@@ -87,11 +88,62 @@ void show_pairs(const std::string& pairs) {
              "together", "of", pairs);
 }
 
+// How many outcomes of each strategy, as "strategy of Rule", are pending.
+using Pending = std::map<std::string, int>;
+
+void follow(const Json& event, Pending& pending) {
+  const std::string type = journal::text_of(event, "type");
+  const int change = type == words_of<OutcomePending>().name   ? 1
+                     : type == words_of<OutcomeCounted>().name ? -1
+                                                               : 0;
+  if (change == 0) return;
+  int& count =
+      pending[journal::text_of(event, "strategy") + " of " + journal::text_of(event, "rule")];
+  count = std::max(0, count + change);
+}
+
+// In the latest run. One that was stopped waits for none.
+Expected<Pending> pending_in(const journal::Reader& journal) {
+  Pending pending;
+  const auto session = journal.newest(journal::kind::kSession);
+  if (!session) return Error{session.error()};
+  if (!*session) return pending;
+  const Json begin = parse_json((*session)->body);
+  const Json past = begin.is_object() ? begin.value("past", Json::array()) : Json::array();
+  for (const Json& each : past) follow(each, pending);
+  auto rows = journal.entries(journal::Which::kReadable, (*session)->id + 1);
+  if (!rows) return Error{rows.error()};
+  journal::Entry entry;
+  auto more = rows->next(entry);
+  for (; more && *more; more = rows->next(entry)) {
+    if (entry.kind == journal::kind::kEvent) follow(parse_json(entry.body), pending);
+    if (entry.kind == journal::kind::kEnd) pending.clear();
+  }
+  if (!more) return Error{more.error()};
+  std::erase_if(pending, [](const auto& each) { return each.second == 0; });
+  return pending;
+}
+
+void show_pending(const Pending& pending) {
+  std::size_t all = 0;
+  std::string lines;
+  for (const auto& [strategy, count] : pending) {
+    all += static_cast<std::size_t>(count);
+    lines += fmt::format("  {}{}\n", escape_controls(strategy),
+                         count == 1 ? "" : fmt::format(" ({})", count));
+  }
+  if (all > 0)
+    fmt::print("\n{} pending, not counted yet\n{}", amount_of(all, "outcome is", "outcomes are"),
+               lines);
+}
+
 int show(const BeliefsOptions& options) {
   const auto journal = options.journal.open();
   if (!journal) return fail(journal.error());
   auto learned = journal->learned();
   if (!learned) return fail(learned.error());
+  const auto pending = pending_in(*journal);
+  if (!pending) return fail(pending.error());
   if (options.json) {
     fmt::print("{}\n", to_line(document_of(*learned)));
     return kOk;
@@ -103,6 +155,7 @@ int show(const BeliefsOptions& options) {
     fmt::print(
         "nothing was learned yet: the outcome of a repair counts after it has held for a minute "
         "(culprit run --healthy)\n");
+    show_pending(*pending);
     return kOk;
   }
   fmt::print("{:<28} {:<28} {:>7} {:>7} {:>8} {:>8}\n", "rule", "strategy", "rules", "now",
@@ -115,6 +168,7 @@ int show(const BeliefsOptions& options) {
   show_couplings(learned->couplings);
   show_latencies(learned->latencies);
   show_pairs(pairs);
+  show_pending(*pending);
   return kOk;
 }
 

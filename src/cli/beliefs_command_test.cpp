@@ -76,6 +76,35 @@ TEST_F(BeliefsCommand, ShowsFailuresThatBeginTogetherAloneAndNotOnce) {
   EXPECT_THAT(shown(), testing::ContainsRegex("MapOld +RobotLost +2 +2"));
 }
 
+// A repair that worked is learned from only once it lasted. Until then it is said that it waits.
+TEST_F(BeliefsCommand, ShowsHowManyOutcomesArePending) {
+  const auto write = [&](std::string_view kind, const std::string& body) {
+    auto writer = journal::Writer::open(path, {});
+    ASSERT_TRUE(writer) << writer.error();
+    ASSERT_TRUE(writer->append({{{0, 1, std::string(kind), body}}, {}}, 1,
+                               journal::Durability::kPowerFailure));
+  };
+  const auto outcome = [&](const char* type, const char* strategy) {
+    write(journal::kind::kEvent, std::string(R"({"type":")") + type + R"(","rule":"CameraDark",)" +
+                                     R"("strategy":")" + strategy + R"("})");
+  };
+  write(journal::kind::kSession,
+        R"({"past":[{"type":"outcome_pending","rule":"MapOld","strategy":"reload"}]})");
+  outcome("outcome_pending", "brighten");
+  outcome("outcome_pending", "brighten");
+  outcome("outcome_pending", "restart");
+  outcome("outcome_counted", "restart");
+  const std::string all =
+      "\n3 outcomes are pending, not counted yet\n  brighten of CameraDark (2)\n"
+      "  reload of MapOld\n";
+  EXPECT_THAT(shown(), testing::AllOf(testing::HasSubstr("nothing was learned yet"),
+                                      testing::EndsWith(all)));
+  learn({{{"CameraDark", "restart", {6, 2}, {5, 1}}}, {}, {}});
+  EXPECT_THAT(shown(), testing::EndsWith("\n" + all));
+  write(journal::kind::kEnd, R"({"text":"culprit was asked to stop"})");
+  EXPECT_THAT(shown(), testing::Not(testing::HasSubstr("pending")));
+}
+
 TEST_F(BeliefsCommand, ShowsExposureAloneAndNoCouplingThatWasForgotten) {
   learn({{}, {{"CameraDark", "RobotLost", {0, 0, 3.5}}, {"CameraDark", "MapOld", {}}}, {}});
   EXPECT_THAT(shown(), testing::HasSubstr("RobotLost"));
