@@ -1,13 +1,18 @@
 #include "cli/decision_report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include <fmt/core.h>
 
 #include "base/name_grammar.h"
 #include "cli/journal_file.h"
 #include "journal/json.h"
+#include "journal/session.h"
+#include "knowledge/beliefs.h"
 #include "knowledge/event_words.h"
+#include "language/checker.h"
 
 namespace culprit::cli {
 namespace {
@@ -120,20 +125,88 @@ std::string hinges_of(const Json& body) {
   return out.empty() ? "" : "\nWhat would change this\n" + out;
 }
 
-std::string candidates_of(const Json& body) {
+// The success rate of a strategy when a decision was made.
+struct SuccessRate {
+  double in_file = 0;  // 0..1
+  double now = 0;
+};
+
+// The rates of the strategies of a rule, by name. Empty: the journal does not have the rules.
+using SuccessRates = std::map<std::string, SuccessRate>;
+
+Expected<SuccessRates> rates_before(const journal::Reader& journal, std::int64_t decision,
+                                    const std::string& rule) {
+  SuccessRates rates;
+  const auto begin = journal.newest(journal::kind::kSession, decision);
+  if (!begin) return Error{begin.error()};
+  if (!*begin) return rates;
+  const auto session = journal::session_from_json(parse_json((*begin)->body));
+  if (!session) return rates;
+  const auto rules = check(Source(session->rules_path, session->rules_text)).rules;
+  if (!rules) return rates;
+  const auto take = [&](const journal::LearnedBelief& learned, const Belief& belief) {
+    const auto known = rates.find(learned.strategy);
+    if (learned.rule == rule && known != rates.end()) known->second.now = belief.mean().value;
+  };
+  for (const Strategy& each : rules->strategies) {
+    if ((*rules)[each.rule].name != rule) continue;
+    const Belief prior = initial_belief(each.success, each.confidence);
+    rates[each.name] = {each.success.value, prior.mean().value};
+    for (const journal::LearnedBelief& learned : session->learned.beliefs) {
+      if (learned.strategy == each.name) take(learned, journal::grown_from(prior, learned));
+    }
+  }
+  auto rows = journal.entries(journal::Which::kReadable, (*begin)->id + 1);
+  if (!rows) return Error{rows.error()};
+  Entry entry;
+  auto more = rows->next(entry);
+  for (; more && *more && entry.id < decision; more = rows->next(entry)) {
+    if (entry.kind != journal::kind::kBelief) continue;
+    const Json body = parse_json(entry.body);
+    const journal::LearnedBelief learned{
+        journal::text_of(body, "rule"),
+        journal::text_of(body, "strategy"),
+        {journal::number_of(body, "alpha", 1), journal::number_of(body, "beta", 1)},
+        {}};
+    take(learned, learned.belief);
+  }
+  if (!more) return Error{more.error()};
+  return rates;
+}
+
+int in_percent(double probability) { return static_cast<int>(std::lround(100 * probability)); }
+
+// " (success rate 94 %; the file says 90 %)"
+std::string text_of(const SuccessRate& rate) {
+  const std::string now = fmt::format(" (success rate {} %", in_percent(rate.now));
+  const bool is_same = in_percent(rate.now) == in_percent(rate.in_file);
+  return now + (is_same ? ")" : fmt::format("; the file says {} %)", in_percent(rate.in_file)));
+}
+
+std::string candidates_of(const Json& body, const SuccessRates& rates) {
   const Json candidates = body.value("candidates", Json::array());
   if (!candidates.is_array() || candidates.empty()) return "";
   std::string out = "\nStrategies compared\n";
+  bool differs = false;
   for (const Json& each : candidates) {
     std::string numbers = fmt::format("relative cost {:.2f}", journal::number_of(each, "cost"));
-    if (each.is_object() && each.contains("resolves"))
-      numbers += fmt::format(", resolves it with {:.0f} %, relative value {:.2f}",
-                             100 * journal::number_of(each, "resolves"),
-                             journal::number_of(each, "value"));
+    if (each.is_object() && each.contains("resolves")) {
+      const double resolves = journal::number_of(each, "resolves");
+      const auto rate = rates.find(journal::text_of(each, "strategy"));
+      const bool is_known = rate != rates.end();
+      differs |= is_known && in_percent(resolves) != in_percent(rate->second.now);
+      numbers +=
+          fmt::format(", resolves it with {} %{}, relative value {:.2f}", in_percent(resolves),
+                      is_known ? text_of(rate->second) : "", journal::number_of(each, "value"));
+    }
     const std::string because = text_of(each, "because");
     out += fmt::format("  {:<24} {}: {}\n", text_of(each, "strategy"), numbers,
                        because.empty() ? "chosen" : "not chosen, " + because);
   }
+  if (differs)
+    out +=
+        "  (Other possible causes make a strategy less likely to resolve the failure than its "
+        "success rate; strategies that are ruled out make it more likely.)\n";
   return out;
 }
 
@@ -200,7 +273,9 @@ Expected<std::string> explain_decision(const journal::Reader& journal, std::int6
   std::string out =
       fmt::format("Row {}, {}\n{}\n", entry.id, local_time(entry.at), text_of(body, "text"));
   if (!is_decision(entry, body)) return out + to_indented(body) + "\n";
-  out += suspects_of(body) + answers_of(body) + hinges_of(body) + candidates_of(body);
+  const auto rates = rates_before(journal, entry.id, journal::text_of(body, "rule"));
+  if (!rates) return Error{rates.error()};
+  out += suspects_of(body) + answers_of(body) + hinges_of(body) + candidates_of(body, *rates);
   if (!sequel.empty()) out += "\nOutcome\n";
   for (const Entry& each : sequel) {
     if (const std::string line = log_line(each); !line.empty()) out += line + "\n";

@@ -6,6 +6,7 @@
 
 #include "base/test_expected.h"
 #include "base/test_folder.h"
+#include "journal/session.h"
 #include "journal/writer.h"
 
 namespace culprit::cli {
@@ -13,6 +14,7 @@ namespace {
 
 using culprit::test::TestFolder;
 using culprit::test::value_of;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -53,6 +55,46 @@ TEST(DecisionReport, SaysWhatWasAskedAndAnswered) {
   EXPECT_THAT(out, HasSubstr("camera exited, for 1.20 s (kernel, +2.9)\n\n"
                              "Asked and answered\n"
                              "  fusion answered, 0.20 s before the decision\n"));
+}
+
+// 90 % in the file, and "resolves it with 92 %": the restart, which is ruled out, would have fixed the rest.
+TEST(DecisionReport, SaysTheSuccessRateBesideTheProbabilityOfTheDecision) {
+  const TestFolder folder;
+  journal::Session session;
+  session.rules_path = "camera.rules";
+  session.rules_text = R"(
+COMPONENT camera NODE /camera
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY replace 90 10
+      ADAPTATION camera redeploy 3
+    STRATEGY again 50 10
+      ADAPTATION camera restart 3
+)";
+  session.planner = Json::object();
+  const std::string decision =
+      R"({"type":"strategy_chosen","rule":"CameraDead","strategy":"replace","text":"it is","candidates":[)"
+      R"({"strategy":"replace","cost":1.3,"resolves":0.923,"value":3.7},)"
+      R"({"strategy":"again","cost":0,"because":"it is not possible"}]})";
+  journal::Batch rows;
+  const auto add = [&](std::string_view kind, std::string body) {
+    rows.entries.push_back({0, kReportedAt, std::string(kind), std::move(body)});
+  };
+  add(journal::kind::kSession, to_line(journal::to_json(session)));
+  add(journal::kind::kEvent, decision);
+  add(journal::kind::kBelief,
+      R"({"rule":"CameraDead","strategy":"replace","alpha":9,"beta":6,"prior":[9,1]})");
+  add(journal::kind::kEvent, decision);
+  auto writer = value_of(journal::Writer::open(folder / "a.journal", {}));
+  const auto done = writer.append(rows, kReportedAt, journal::Durability::kProcessEnd);
+  ASSERT_TRUE(done) << done.error();
+  const auto reader = value_of(journal::Reader::open(folder / "a.journal"));
+  EXPECT_THAT(value_of(explain_decision(reader, 2)),
+              AllOf(HasSubstr("resolves it with 92 % (success rate 90 %), relative value 3.70"),
+                    HasSubstr("strategies that are ruled out make it more likely")));
+  EXPECT_THAT(value_of(explain_decision(reader, 4)),
+              HasSubstr("resolves it with 92 % (success rate 60 %; the file says 90 %), "));
 }
 
 TEST(DecisionReport, SaysOnceWhatWouldEndTheWait) {
