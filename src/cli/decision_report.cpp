@@ -291,4 +291,24 @@ Expected<std::string> decision_as_json(const journal::Reader& journal, std::int6
   return to_line(document);
 }
 
+Expected<std::int64_t> latest_decision_about(const std::vector<std::string>& rules,
+                                             const journal::Reader& journal) {
+  std::int64_t latest = 0;
+  auto rows = journal.entries(journal::Which::kReadable);
+  if (!rows) return Error{rows.error()};
+  Entry entry;
+  auto more = rows->next(entry);
+  for (; more && *more; more = rows->next(entry)) {
+    const bool may_be_one = std::ranges::any_of(
+        rules, [&](const std::string& rule) { return entry.body.find(rule) != std::string::npos; });
+    if (!may_be_one) continue;
+    const Json body = parse_json(entry.body);
+    const bool is_about_one =
+        std::ranges::find(rules, journal::text_of(body, "rule")) != rules.end();
+    if (is_about_one && is_decision(entry, body)) latest = entry.id;
+  }
+  if (!more) return Error{more.error()};
+  return latest;
+}
+
 }  // namespace culprit::cli

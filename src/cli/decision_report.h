@@ -2,6 +2,10 @@
 // was asked for, and what came of it.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "journal/reader.h"
 
 namespace culprit::cli {
@@ -11,5 +15,8 @@ namespace culprit::cli {
 Expected<std::string> explain_decision(const journal::Reader& journal, std::int64_t id);
 // The same as JSON: {"decision": row, "sequel": [rows]}, each as culprit log --json has it.
 Expected<std::string> decision_as_json(const journal::Reader& journal, std::int64_t id);
+// The row of the latest decision about a failure of one of these rules; 0: there is none.
+Expected<std::int64_t> latest_decision_about(const std::vector<std::string>& rules,
+                                             const journal::Reader& journal);
 
 }  // namespace culprit::cli

@@ -1,5 +1,6 @@
 #include <charconv>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,9 +9,11 @@
 #include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "cli/decision_report.h"
+#include "cli/explained_name.h"
 #include "cli/glossary.h"
 #include "cli/journal_file.h"
 #include "doctor/finding_explanations.h"
+#include "incident_reports/incident_report.h"
 #include "journal/json.h"
 #include "language/explanations.h"
 
@@ -94,6 +97,68 @@ std::string nearest_subject(const std::string& what) {
   return nearest_term(what);
 }
 
+Json without_decision(const ExplainedName& found, const std::string& name) {
+  return {{"name", name},
+          {"kind", found.kind},
+          {"rules", found.rules},
+          {"decision", nullptr},
+          {"sequel", Json::array()}};
+}
+
+int print_name(const ExplainOptions& options, const ExplainedName& found,
+               const journal::Reader& journal) {
+  const auto decision = latest_decision_about(found.rules, journal);
+  if (!decision) return fail(decision.error());
+  if (options.json) {
+    Json document = without_decision(found, options.what);
+    if (*decision != 0) {
+      const auto json = decision_as_json(journal, *decision);
+      if (!json) return fail(json.error());
+      document.update(parse_json(*json));
+    }
+    fmt::print("{}\n", to_line(document));
+    return kOk;
+  }
+  fmt::print("{}", found.text);
+  if (*decision == 0) {
+    fmt::print("  No decision was made about it yet.\n");
+    return kOk;
+  }
+  const auto report = explain_decision(journal, *decision);
+  if (!report) return fail(report.error());
+  fmt::print("\nThe latest decision about it\n\n{}", *report);
+  return kOk;
+}
+
+// The remedy for a word that is no code, term or name; may be empty.
+std::string remedy_of(const std::string& what, const std::optional<RuleSet>& rules) {
+  const bool is_incident =
+      what.find('-') != std::string::npos && incident_reports::began_by_id(what);
+  if (is_incident) return "; culprit incident " + what + " -o incident.html shows an incident";
+  std::string near = rules ? nearest_name(*rules, what) : "";
+  if (near.empty()) near = nearest_subject(what);
+  return near.empty() ? "" : "; did you mean '" + printable(near) + "'?";
+}
+
+// A name of the rules that the journal has.
+int explain_name(const ExplainOptions& options) {
+  const auto journal = options.journal.open();
+  auto rules = journal ? latest_rules(*journal) : Error{journal.error()};
+  if (rules && *rules) {
+    if (const auto found = find_name(**rules, options.what))
+      return print_name(options, *found, *journal);
+  }
+  const std::optional<RuleSet> known = rules ? std::move(*rules) : std::nullopt;
+  return fail("there is no code, term, rule, component or strategy '" + printable(options.what) +
+                  "'" + remedy_of(options.what, known) +
+                  (known ? ""
+                         : "\nThe names of rules are unknown: " +
+                               (rules ? "the journal has none" : rules.error())) +
+                  "\nculprit explain lists all codes, culprit explain --terms all terms; culprit "
+                  "explain --last explains the latest decision.",
+              kUsage);
+}
+
 int explain(const ExplainOptions& options) {
   if (options.lists_terms) return list_terms(options.json);
   if (options.last || is_number(options.what)) return explain_row(options);
@@ -125,13 +190,7 @@ int explain(const ExplainOptions& options) {
       fmt::print("{}", options.json ? to_line(to_json(*term)) + "\n" : page(*term));
       return kOk;
     }
-    const std::string near = nearest_subject(options.what);
-    return fail("there is no code and no term '" + printable(options.what) + "'" +
-                    (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                    "\nculprit explain lists all codes, culprit explain --terms all terms; culprit "
-                    "explain --last "
-                    "explains the latest decision.",
-                kUsage);
+    return explain_name(options);
   }
   if (options.json) {
     fmt::print("{}\n", to_line(to_json(*explanation)));
@@ -147,11 +206,12 @@ void add_explain(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App* command = app.add_subcommand(
       "explain",
-      "Explain a decision from the journal, a message of culprit check or doctor, or a term");
-  auto* code =
-      command->add_option("WHAT", options->words,
-                          "A row of culprit log (123), a code (R012, D001) or a term (root cause); "
-                          "without it: all codes");
+      "Explain a decision from the journal, a name of the rules, a message of culprit check or "
+      "doctor, or a term");
+  auto* code = command->add_option(
+      "WHAT", options->words,
+      "A row of culprit log (123), a rule, component or strategy, a code (R012, "
+      "D001) or a term (root cause); without it: all codes");
   CLI::Option* last =
       command->add_flag("--last", options->last, "The latest decision")->excludes(code);
   options->journal.add_to(*command);
