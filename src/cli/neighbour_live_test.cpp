@@ -91,6 +91,21 @@ TEST_F(Neighbours, OfOneMachineTakeOverAtOnceWhenTheManagerIsKilled) {
   EXPECT_TRUE(second.prints("redeploy camera: done")) << second.output();
 }
 
+// The processes are those of the other one, which goes on.
+TEST_F(Neighbours, ThatOnlyAdviseNameNoProcessOfTheManagerAtTheirEnd) {
+  TestProgram first = run("robot", "one", {"--launch"});
+  ASSERT_TRUE(first.prints("camera is there")) << first.output();
+  TestProgram second = run("robot", "two");
+  ASSERT_TRUE(second.prints("another culprit manages this robot")) << second.output();
+  ASSERT_TRUE(second.prints("camera is there")) << second.output();
+  second.signal(SIGINT);
+  EXPECT_EQ(second.wait(), 0);
+  EXPECT_THAT(second.output(), Not(HasSubstr("run on")));
+  first.signal(SIGINT);
+  EXPECT_EQ(first.wait(), 0);
+  EXPECT_THAT(first.output(), HasSubstr("these processes that culprit started run on"));
+}
+
 // Each has a journal of its own.
 TEST_F(Neighbours, DoNotGoOnWithWhatWasUnderWayBeforeAnotherOneManaged) {
   const std::string rules = rules_of("robot", "sleep 20");  // a start that takes long

@@ -98,16 +98,18 @@ constexpr Duration kEndsWithin = std::chrono::milliseconds(2800);
 // Of that: until the other processes of a launch that had started culprit, too.
 constexpr Duration kLaunchEndsWithin = std::chrono::milliseconds(1500);
 
-// The processes that culprit started outlive it.
-void name_what_runs_on(const std::string& robot, const std::vector<int>& others,
+// The processes that culprit started outlive it. `role`: its own, at its end. If it only advised, another
+// culprit goes on with them.
+void name_what_runs_on(const std::string& robot, const std::vector<int>& others, live::Role role,
                        std::FILE* remarks) {
   const auto ended = owners::end_with_own_launch(robot, others, kLaunchEndsWithin);
   for (const owners::StartedProcess& each : ended)
     say(remarks, "culprit: its own launch ends, and with it {}\n",
         escape_controls(to_string(each, live_now())));
   const auto started = owners::started_processes(robot);
-  if (started.empty() || !ended.empty()) return;
-  say(remarks, "culprit: these processes that it started run on; culprit end-started ends them:\n");
+  if (started.empty() || !ended.empty() || role == live::Role::kAdvise) return;
+  say(remarks,
+      "culprit: these processes that culprit started run on; culprit end-started ends them:\n");
   for (const owners::StartedProcess& each : started)
     say(remarks, "  {}\n", escape_controls(to_string(each, live_now())));
 }
@@ -130,6 +132,7 @@ class Run {
   Expected<void> manage(live::LoadedRules rules, StopSignals& signals);
   // The processes of the launch that started culprit, when it was told to end.
   const std::vector<int>& others_of_launch() const { return others_; }
+  live::Role role() const { return live_.role(); }
 
  private:
   std::vector<live::Observer*> observers();
@@ -310,7 +313,7 @@ int run(const RunOptions& options) {
   if (const auto ended = whole.manage(std::move(*rules), signals); !ended)
     return fail(ended.error());
   say(remarks, "culprit: stopped; the robot goes on as it is\n");
-  name_what_runs_on(robot, whole.others_of_launch(), remarks);
+  name_what_runs_on(robot, whole.others_of_launch(), whole.role(), remarks);
   return kOk;
 }
 

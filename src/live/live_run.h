@@ -35,6 +35,8 @@ class LiveRun {
   // stays deaf, it replaces itself in this process, and run() does not return. Errors: the robot
   // cannot be joined in another role. @pre begin() was called
   Expected<void> run(OrderTaker& desk, const std::atomic<bool>& stopped);
+  // Its latest one.
+  Role role() const { return role_.role(); }
 
   // The following may be called from any thread.
 
