@@ -6,6 +6,7 @@
 
 #include "base/environment.h"
 #include "json/json.h"
+#include "ros2/domain_lock.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {
@@ -156,6 +157,23 @@ RULE CameraSlow
   EXPECT_THAT(found,
               testing::ElementsAre("R060 /managed_subsystem/camera", "R060 -",
                                    "R061 /managed_subsystem/rgb_camera", "R062 image_degradation"));
+}
+
+TEST_F(Commands, NameTheDomainsOfThisMachineWhereTheySeeNoRobot) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  auto joined = culprit({"graph"});
+  ASSERT_EQ(joined.wait(), 0);
+  ASSERT_THAT(joined.output(), HasSubstr("/managed_subsystem/camera"));
+  const auto elsewhere = ros2::DomainLock::reserve();
+  ASSERT_TRUE(elsewhere) << elsewhere.error();
+  setenv("ROS_DOMAIN_ID", std::to_string(elsewhere->domain()).c_str(), 1);
+  const std::string rules = world.write("two.rules", kCommandRules);
+  auto check = culprit({"check", "--robot", "--wait", "0.5", rules});
+  EXPECT_EQ(check.wait(), 1);
+  EXPECT_THAT(check.output(), HasSubstr("Processes of this machine are on domain "));
+  auto graph = culprit({"graph", "--wait", "0.5"});
+  EXPECT_EQ(graph.wait(), 0);
+  EXPECT_THAT(graph.output(), HasSubstr("Processes of this machine are on domain "));
 }
 
 TEST_F(Commands, ExplainShowsThePageOfACode) {

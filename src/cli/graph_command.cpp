@@ -12,6 +12,7 @@
 #include "knowledge/dependency_graph.h"
 #include "knowledge/dependency_path.h"
 #include "live/live_robot.h"
+#include "live/preflight.h"
 #include "live/rule_file.h"
 #include "ros2/options.h"
 #include "rule_graph/rule_graph.h"
@@ -105,7 +106,7 @@ std::string in_words(const Place& place) {
 
 void print_text(const Picture& picture) {
   if (picture.nodes.empty()) {
-    fmt::print("no nodes; is ROS_DOMAIN_ID the robot's?\n");
+    fmt::print("{}\n", live::no_nodes_on(ros2::options_from_environment()->domain));
     return;
   }
   for (const auto& [node, place] : picture.nodes) {

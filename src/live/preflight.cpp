@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/ros_names.h"
+#include "doctor/machine.h"
 #include "link/service_call.h"
 #include "live/robot_survey.h"
 #include "live/setups.h"
@@ -97,7 +98,11 @@ class Look {
 }  // namespace
 
 std::string no_nodes_on(std::uint32_t domain) {
-  return fmt::format("no nodes were seen on domain {}; is ROS_DOMAIN_ID the robot's?", domain);
+  const auto others = doctor::other_domains(domain, {});
+  return fmt::format("no nodes were seen on domain {}; is ROS_DOMAIN_ID the robot's?{}", domain,
+                     others.empty() ? ""
+                                    : " Processes of this machine are on " +
+                                          doctor::domains_with_programs(others) + ".");
 }
 
 namespace {

@@ -16,7 +16,8 @@
 
 namespace culprit::live {
 
-// "no nodes were seen on domain 7; is ROS_DOMAIN_ID the robot's?"
+// "no nodes were seen on domain 7; is ROS_DOMAIN_ID the robot's? Processes of this machine are on
+// domain 0 (lidar_driver (process 4711))."
 std::string no_nodes_on(std::uint32_t domain);
 
 // Looks until all that these rules name is there, or `wait` is over, or it is to stop; asks

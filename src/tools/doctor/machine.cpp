@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 
+#include "doctor/wording.h"
 #include "owners/proc.h"
 #include "owners/start_of.h"
 #include "rtps/udp_sockets.h"
@@ -169,6 +170,14 @@ std::vector<OtherDomain> other_domains(std::uint32_t own, const std::map<std::st
     }
   }
   return others;
+}
+
+std::string domains_with_programs(const std::vector<OtherDomain>& others) {
+  std::vector<std::string> all;
+  for (const OtherDomain& each : others)
+    all.push_back("domain " + std::to_string(each.domain) +
+                  (each.programs.empty() ? "" : " (" + listed(each.programs) + ")"));
+  return listed(all);
 }
 
 }  // namespace culprit::doctor

@@ -17,4 +17,7 @@ std::vector<Disk> disks_of(const std::map<std::string, int>& nodes);
 // with the programs that may be seen. `nodes`: those of our domain.
 std::vector<OtherDomain> other_domains(std::uint32_t own, const std::map<std::string, int>& nodes);
 
+// "domain 42 (lidar_driver (process 4711)) and 2 more"
+std::string domains_with_programs(const std::vector<OtherDomain>& others);
+
 }  // namespace culprit::doctor

@@ -8,18 +8,11 @@
 #include "base/name_grammar.h"
 #include "base/tool_names.h"
 #include "doctor/examine.h"
+#include "doctor/machine.h"
 #include "doctor/wording.h"
 
 namespace culprit::doctor {
 namespace {
-
-std::string domains_with_programs(const std::vector<OtherDomain>& others) {
-  std::vector<std::string> all;
-  for (const OtherDomain& each : others)
-    all.push_back(fmt::format("domain {}{}", each.domain,
-                              each.programs.empty() ? "" : " (" + listed(each.programs) + ")"));
-  return listed(all);
-}
 
 void examine_presence(const Picture& picture, Findings& all) {
   if (!picture.nodes.empty()) return;
