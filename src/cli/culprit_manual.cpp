@@ -16,8 +16,8 @@ const Manual& culprit_manual() {
            "fail at once, and applies the fewest, cheapest adaptations that bring the robot back. "
            "A rule file describes the failures, their detection and possible repairs. culprit "
            "keeps its findings, decisions and actions in a journal, and learns from every attempt.",
-           "Options that take a time take a unit: 500ms, 8s, 1.5min, 2h; a number alone "
-           "is of seconds. With --json, "
+           "Options that take a time take a unit: 500ms, 8s, 1.5min (or 1.5m), 2h, 1d; a number "
+           "alone is of seconds. With --json, "
            "commands print one JSON document (log: one for each row) and nothing else "
            "on the standard output. Colours are "
            "only for terminals; NO_COLOR switches them off."},

@@ -40,7 +40,7 @@ Expected<Intensity> parse_intensity(const std::string& text) {
   if (slash == std::string::npos) return error;
   Intensity intensity;
   const auto [end, bad] = std::from_chars(text.data(), text.data() + slash, intensity.most);
-  const auto period = parse_duration(text.substr(slash + 1));
+  const auto period = typed_duration(text.substr(slash + 1));
   const bool is_count = bad == std::errc() && end == text.data() + slash;
   if (!is_count || intensity.most < 1 || intensity.most > 1'000'000 || !period ||
       *period <= Duration::zero())

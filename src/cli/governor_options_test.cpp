@@ -16,6 +16,8 @@ TEST(GovernorOptions, BoundTheRestartsOfAComponentUnlessToldNotTo) {
   EXPECT_EQ(options.options()->limits.restarts.period, 1h);
   options.restarts = "3/30min";
   EXPECT_EQ(options.options()->limits.restarts.most, 3);
+  options.restarts = "3/30m";
+  EXPECT_EQ(options.options()->limits.restarts.period, 30min);
   options.restarts = "none";
   EXPECT_EQ(options.options()->limits.restarts.most, 0);
 }

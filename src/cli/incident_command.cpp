@@ -187,7 +187,8 @@ void add_incident(CLI::App& app, int& exit_code) {
       ->needs(id);
   command
       ->add_option("--since", options->since,
-                   "Only incidents of the last 10min, 2h ..., and those that lasted until then")
+                   "Only incidents of the last 10min, 2h, 1d ..., and those that lasted until then")
+      ->type_name("DURATION")
       ->excludes(id);
   command->add_flag("--json", options->json,
                     "The list, or the incident with its events and recordings, as JSON");

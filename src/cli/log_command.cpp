@@ -88,7 +88,8 @@ void add_log(CLI::App& app, int& exit_code) {
   command->add_option("-n,--lines", options->lines, "Number of the latest rows")
       ->check(CLI::Range(1, 1'000'000'000))
       ->capture_default_str();
-  command->add_option("--since", options->since, "Only rows of the last 10min, 2h ...");
+  command->add_option("--since", options->since, "Only rows of the last 10min, 2h, 1d ...")
+      ->type_name("DURATION");
   command
       ->add_option("--kind", options->kind, "Only rows of this kind, without the limit of --lines")
       ->check(CLI::IsMember({"session", "robot", "event", "intent", "outcome", "belief", "coupling",

@@ -319,14 +319,17 @@ void add_replay(CLI::App& app, int& exit_code) {
                       "The run that begins with this row (default: the latest)");
   command->add_option("--rules", options->rules, "Other rules")->type_name("FILE");
   command->add_flag("--events", options->events, "Print what happens (a bag's replay always does)");
-  command->add_option("--since", options->since,
-                      "With --rules or --curve: only the last 10min, 1h ... until now over all "
-                      "runs, or until the end of a bag");
+  command
+      ->add_option("--since", options->since,
+                   "With --rules or --curve: only the last 10min, 1h ... until now over all runs, "
+                   "or until the end of a bag")
+      ->type_name("DURATION");
   command
       ->add_option("--curve", options->curves,
                    "Print what the rules read, as a table: 'rate /scan', 'age /scan', 'input x'")
       ->type_name("NAME");
-  command->add_option("--until", options->until, "With --curve: until so long ago (default: 0s)");
+  command->add_option("--until", options->until, "With --curve: until so long ago (default: 0s)")
+      ->type_name("DURATION");
   command
       ->add_option("--message-path", options->message_path,
                    "For a bag: folders with .msg files: <folder>/<package>/msg/<Type>.msg")

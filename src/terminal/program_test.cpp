@@ -58,7 +58,7 @@ Ended ended(std::vector<std::string> words) {
         CLI::App* note = app.add_subcommand("note", "Note");
         note->add_option("--reason", format, "Why");
         note->add_option("--lines", port, "How many");
-        note->add_option("--since", format, "Since");
+        note->add_option("--since", format, "Since")->type_name("DURATION");
         note->add_option("--journal", file, "Where");
         note->add_option("--file", file, "What")->check(CLI::ExistingFile);
         note->add_option("--topics", files, "Which");
@@ -122,10 +122,12 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"check", "--wait=5", "s", "a"}, "--wait: a duration is one word; write --wait 5s\n"},
       {{"check", "a", "two words"}, "'two words' is one argument too many"},
       {{"test", "a", "--for", "3", "s"}, "--for: a duration is one word; write --for 3s\n"},
-      {{"test", "a", "--for", "1d"}, "--for: '1d' is not a duration; write 24h\n"},
+      {{"test", "a", "--for", "1d"}, "--for: 24h is not from 500ms to 1min\n"},
+      {{"test", "a", "--for", "10y"}, "--for: '10y' is not a duration; write a number and a unit"},
       {{"note", "--limit", "3"}, "note has no option '--limit'; did you mean '--lines'?\n"},
       {{"note", "--since", "5", "minutes"},
        "--since: a duration is one word; write --since 5min\n"},
+      {{"note", "--since", "5", "days"}, "--since: a duration is one word; write --since 5d\n"},
       {{"note", "3"}, "'3' is one argument too many; did you mean --lines 3?\n"},
       {{"note", "a.journal"}, "did you mean --journal 'a.journal'?\n"},
       {{"check", "--werror", "a"}, "check has no option '--werror'; write --fail-on warning\n"},

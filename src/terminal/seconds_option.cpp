@@ -16,7 +16,7 @@ bool is_number(const std::string& text) {
 // A number of seconds stays unchanged, and so does invalid text: CLI11 reports its error then.
 std::string in_seconds(std::string& text) {
   if (is_number(text)) return "";
-  const auto time = parse_duration(text);
+  const auto time = typed_duration(text);
   if (!time) return time.error();
   text = fmt::format("{}", seconds(*time));
   return "";
@@ -24,8 +24,19 @@ std::string in_seconds(std::string& text) {
 
 }  // namespace
 
+Expected<Duration> typed_duration(const std::string& text) {
+  if (is_number(text)) return parse_duration(text + "s");
+  const std::string number = text.substr(0, text.size() - 1);
+  if (number.empty() || !is_number(number)) return parse_duration(text);
+  if (text.ends_with('m')) return parse_duration(number + "min");
+  if (!text.ends_with('d')) return parse_duration(text);
+  constexpr double kHours = 24;
+  const auto hours = parse_duration(number + "h");
+  return hours ? from_seconds(kHours * seconds(*hours)) : hours;
+}
+
 Expected<Duration> duration_of_option(const std::string& name, const std::string& text) {
-  auto duration = parse_duration(is_number(text) ? text + "s" : text);
+  auto duration = typed_duration(text);
   if (!duration) return Error{name + ": " + duration.error()};
   if (*duration < Duration::zero())
     return Error{name + ": '" + text + "' is negative; write how long ago, as in 1h"};

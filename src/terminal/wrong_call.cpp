@@ -14,10 +14,10 @@
 #include "base/closest.h"
 #include "base/joined.h"
 #include "base/name_grammar.h"
-#include "base/units.h"
 #include "terminal/help.h"
 #include "terminal/listed.h"
 #include "terminal/other_tools.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit {
 namespace {
@@ -46,9 +46,9 @@ std::vector<std::string> options_of(const CLI::App& command) {
 
 // "min" for "minutes"; empty: `word` is no unit.
 std::string unit_of_words(std::string_view word) {
-  constexpr auto kUnits = std::to_array<std::string_view>({"ms", "s", "min", "h"});
+  constexpr auto kUnits = std::to_array<std::string_view>({"ms", "s", "min", "h", "d"});
   constexpr auto kLongForms =
-      std::to_array<std::string_view>({"milliseconds", "seconds", "minutes", "hours"});
+      std::to_array<std::string_view>({"milliseconds", "seconds", "minutes", "hours", "days"});
   for (std::size_t i = 0; i < kUnits.size(); ++i) {
     const bool is_unit = word == kUnits[i] || (word.size() > 2 && kLongForms[i].starts_with(word));
     if (is_unit) return std::string(kUnits[i]);
@@ -293,9 +293,9 @@ std::string remedy_of_extra(std::string_view extra, std::string_view before,
   if (option != nullptr && option->get_items_expected_max() == 0)
     return "; " + std::string(before) + " takes no value";
   const auto has = [&](const char* name) { return command.get_option_no_throw(name) != nullptr; };
-  const std::string duration = std::string(extra) + (extra.ends_with('m') ? "in" : "");
-  if (has("--for") && parse_duration(duration)) return "; did you mean --for " + duration + "?";
   const bool is_count = extra.find_first_not_of("0123456789") == std::string_view::npos;
+  if (has("--for") && !is_count && typed_duration(std::string(extra)))
+    return "; did you mean --for " + std::string(extra) + "?";
   if (has("--lines") && is_count && !extra.empty())
     return "; did you mean --lines " + std::string(extra) + "?";
   if (has("--lift") && (is_end_of_silence(extra) || is_end_of_silence(before))) {
@@ -424,8 +424,7 @@ std::optional<std::string> value_of_several_words(const std::string& option,
                                                   const std::vector<std::string>& behind) {
   const std::string type = value_of(known);
   const std::string unit = unit_of_words(behind[0]);
-  const bool is_duration = type == "DURATION" || option == "--since";
-  if (is_duration && !unit.empty())
+  if (type == "DURATION" && !unit.empty())
     return option + ": a duration is one word; write " + option + " " + number + unit;
   if (type == "SIZE" && is_one_of(behind[0], {"B", "kB", "KB", "MB", "GB", "TB", "MiB", "GiB"}))
     return option + ": a size is one word; write " + option + " " + number + behind[0];

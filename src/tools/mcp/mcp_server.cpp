@@ -66,7 +66,7 @@ bool is_explainable(std::string_view what) {
 // 10min, 2h
 bool is_time(std::string_view text) {
   const std::size_t unit = text.find_first_not_of("0123456789");
-  constexpr std::array kUnits = {"s", "min", "h", "d"};
+  constexpr std::array kUnits = {"s", "m", "min", "h", "d"};
   return unit != 0 && unit != std::string_view::npos && text.size() < 12 &&
          std::ranges::find(kUnits, text.substr(unit)) != kUnits.end();
 }
