@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "knowledge/describe.h"
+#include "knowledge/presence.h"
 
 namespace culprit::live {
 namespace {
@@ -24,6 +25,32 @@ std::vector<std::string> names_of_rules(const std::vector<RuleId>& ids, const Ru
 bool is_missing(ComponentId id, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[id];
   return knowledge.rules[id].is_required && (state.is_missed || state.alive == false);
+}
+
+// Whether a strategy of the rule adapts the component and does not start it. One that a strategy starts may be in
+// reserve.
+bool needs(const Rule& rule, ComponentId id, const RuleSet& rules) {
+  if (!std::ranges::count(rule.components, id)) return false;
+  return std::ranges::none_of(rule.strategies, [&](StrategyId strategy) {
+    return std::ranges::any_of(rules[strategy].adaptations, [&](const Adaptation& each) {
+      return each.component == id && each.type == AdaptationType::kStart;
+    });
+  });
+}
+
+// The rules of level ERROR that can see and need a component that was never seen. Those that are blind have an alert
+// of their own.
+std::vector<RuleId> rules_without(ComponentId id, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  std::vector<RuleId> all;
+  if (presence_of(id, knowledge) != Presence::kNeverSeen) return all;
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    const Rule& rule = rules.rules[r];
+    const bool matters = rule.policies.criticality == Criticality::kError &&
+                         !knowledge.blindness[RuleId(r)] && needs(rule, id, rules);
+    if (matters) all.emplace_back(r);
+  }
+  return all;
 }
 
 bool is_about(const alerts::Alert& alert, const std::string& component) {
@@ -164,9 +191,15 @@ std::vector<Alerting::Problem> Alerting::problems_of_the_whole() const {
     add("deafness in general", "culprit receives nothing from the robot",
         "nothing is judged, and nothing is done");
   for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
-    if (!is_missing(ComponentId(c), knowledge)) continue;
+    const bool is_required = is_missing(ComponentId(c), knowledge);
+    const auto rules =
+        is_required ? std::vector<RuleId>() : rules_without(ComponentId(c), knowledge);
+    if (!is_required && rules.empty()) continue;
     const std::string& name = knowledge.rules.components[c].name;
-    Problem& missing = add(key_of_component(name), name + " is REQUIRED and is not there", "");
+    Problem& missing =
+        is_required ? add(key_of_component(name), name + " is REQUIRED and is not there", "")
+                    : add(key_of_component(name), name + " was never seen",
+                          "it is needed by " + listed(names_of_rules(rules, knowledge.rules)));
     missing.alert.components = {name};
     missing.needs_person_if_it_lasts = true;  // a rule may be about to do something
   }

@@ -5,7 +5,8 @@
 // - It is reported after `wait`. If it has cleared by then, one message reports both. It is reported at once if a person is needed, also if it was reported
 //   before.
 // - The end is reported once the fault has been absent for kStaysAway.
-// - Problems of the whole robot are reported in the same way: a storm, a deaf culprit, a missing REQUIRED component.
+// - Problems of the whole robot are reported in the same way: a storm, a deaf culprit, a missing REQUIRED component, one
+//   that was never seen and that a rule of level ERROR needs.
 #pragma once
 
 #include <functional>

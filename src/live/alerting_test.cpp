@@ -117,6 +117,43 @@ TEST(Alerting, TellsOnceThatNoRuleCanSee) {
   EXPECT_EQ(of_sight, 1);
 }
 
+// No rule fires for it, and none is blind: the picture comes from the camera. The spare is one that a strategy starts.
+TEST(Alerting, TellsOfAComponentThatWasNeverSeenAndThatAnErrorRuleNeeds) {
+  std::vector<Alert> posted;
+  TestRobot robot(R"(
+COMPONENT camera NODE /camera
+COMPONENT fusion NODE /fusion
+COMPONENT spare  NODE /spare LAUNCH "spare"
+COMPONENT lamp   NODE /lamp
+RULE PictureSilent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY restart_fusion 90 10
+      ADAPTATION fusion restart 10
+    STRATEGY start_spare 50 10
+      ADAPTATION spare start 10
+RULE PictureOld
+  POLICIES WARNING
+  TRIGGER age(/rgb) > 1s
+    STRATEGY restart_lamp 90 10
+      ADAPTATION lamp restart 2
+)");
+  robot.add("camera", {}, "/rgb");
+  Alerting alerting{{}, [&](const Alert& alert) { posted.push_back(alert); }, [] { return 1e9; }};
+  alerting.begins(robot.manager(), {}, Time());
+  robot.discover();
+  for (int i = 0; i < 600; ++i) {
+    robot.run_for(100ms);
+    std::vector<Observation> none;
+    alerting.stepped({robot.now, {}, none, {}, robot.manager().events()});
+  }
+  ASSERT_EQ(posted.size(), 1u);
+  EXPECT_EQ(posted[0].headline, "fusion was never seen");
+  EXPECT_EQ(posted[0].health, "ERROR");
+  EXPECT_EQ(posted[0].doing, "it is needed by PictureSilent");
+  EXPECT_TRUE(posted[0].needs_person);
+}
+
 TEST(Alerting, TellsOfAFaultThatIsHealedAtOnceInOneMessage) {
   Alerted alerted;
   alerted.robot->kill("camera");
