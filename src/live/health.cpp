@@ -59,9 +59,20 @@ std::optional<ros2::Health> of_component(ComponentId id, const Knowledge& knowle
   return health;
 }
 
+// No alarm is not health.
+void take_back_what_is_not_judged(std::vector<ros2::Health>& all) {
+  for (ros2::Health& each : all) {
+    if (each.level != kWell) continue;
+    each.level = kWarn;
+    each.message = "not judged: culprit does not receive the robot's messages";
+  }
+  all[0].level = kError;
+  all[0].message = "culprit does not receive the robot's messages; nothing is judged or done";
+}
+
 }  // namespace
 
-std::vector<ros2::Health> health(const Knowledge& knowledge) {
+std::vector<ros2::Health> health(const Knowledge& knowledge, Reception reception) {
   std::vector<ros2::Health> all{{"culprit", kWell, "all rules are quiet", {}}};
   int failing = 0;
   int exhausted = 0;
@@ -99,6 +110,7 @@ std::vector<ros2::Health> health(const Knowledge& knowledge) {
     }
     all.push_back(std::move(*status));
   }
+  if (reception == Reception::kLost) take_back_what_is_not_judged(all);
   return all;
 }
 

@@ -89,6 +89,20 @@ TEST(HealthReport, WarnsOfAComponentThatIsNotThere) {
   EXPECT_EQ(health(robot.knowledge)[0].message, "no failure is seen, but c is down");
 }
 
+// A deaf culprit judges nothing: no rule reads "quiet".
+TEST(HealthReport, ErrsWhileCulpritIsDeafAndCallsNothingWell) {
+  Present robot;
+  robot.knowledge.states.enter(RuleId(1), RulePhase::kExhausted);
+  const auto all = health(robot.knowledge, Reception::kLost);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].level, 2);
+  EXPECT_EQ(all[0].message,
+            "culprit does not receive the robot's messages; nothing is judged or done");
+  EXPECT_EQ(all[1].level, 1);
+  EXPECT_EQ(all[1].message, "not judged: culprit does not receive the robot's messages");
+  EXPECT_EQ(all[2].message, "nothing helped; a person must look");
+}
+
 TEST(HealthReport, WarnsOfABlindRule) {
   const RuleSet rules = two_rules();
   Knowledge knowledge(rules);

@@ -347,7 +347,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   if (frame_.advises && frame_.lease) seen_.emplace(rules_, robot_->now());
   if (frame_.records) record(session, beginning);
   make_runtime();
-  robot_->link().publish(health(manager_->knowledge()));
+  publish_health();
   // No order was before the beginning.
   for (Observation& each : seen) {
     if (std::holds_alternative<Order>(each.what)) each.at = session.start;
@@ -485,6 +485,11 @@ void LiveSession::keep_down_what_ended_unseen(RunBeginning& beginning) const {
   }
 }
 
+void LiveSession::publish_health() {
+  const Reception reception = manager_->hears() ? Reception::kWorks : Reception::kLost;
+  robot_->link().publish(health(manager_->knowledge(), reception));
+}
+
 void LiveSession::tell(std::span<const Event> events) {
   is_bequest_new_ |= !events.empty();
   for (const Event& event : events) {
@@ -493,7 +498,7 @@ void LiveSession::tell(std::span<const Event> events) {
     const std::string text = describe(event, rules_);
     if (!text.empty()) robot_->link().log(severity_in_rosout(severity_of(event, rules_)), text);
   }
-  robot_->link().publish(health(manager_->knowledge()));
+  publish_health();
   if (is_in_fleet_) frame_.fleet->happened();
   bequeath();
 }

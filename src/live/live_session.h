@@ -140,6 +140,7 @@ class LiveSession {
   void end_with_launches();
   void note_what_goes_on();
   void keep_down_what_ended_unseen(RunBeginning& beginning) const;
+  void publish_health();
   void tell(std::span<const Event> events);
 
   Frame frame_;
