@@ -9,6 +9,7 @@
 #include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "journal/json.h"
+#include "knowledge/describe.h"
 #include "terminal/console.h"
 
 namespace culprit::cli {
@@ -81,10 +82,11 @@ std::string log_line(const journal::Entry& entry) {
     std::replace(what.begin(), what.end(), '_', ' ');
   }
   std::string text = journal::text_of(body, "text");
-  if (text.empty() && body.contains("alpha"))
-    text = fmt::format("{} of {}: {:.2f} helped, {:.2f} did not",
-                       journal::text_of(body, "strategy"), journal::text_of(body, "rule"),
-                       journal::number_of(body, "alpha"), journal::number_of(body, "beta"));
+  if (text.empty() && body.contains("alpha")) {
+    const Belief belief{journal::number_of(body, "alpha"), journal::number_of(body, "beta")};
+    text = fmt::format("{} of {}: success rate {}", journal::text_of(body, "strategy"),
+                       journal::text_of(body, "rule"), to_string(belief.mean()));
+  }
   if (text.empty() && body.contains("cause"))
     text = fmt::format("{} with {}: cleared {:g} times, stayed {:g} times",
                        journal::text_of(body, "effect"), journal::text_of(body, "cause"),

@@ -70,8 +70,10 @@ TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
   EXPECT_EQ(second.wait(), 0);
   kill(process_that_is_there(second.output()), SIGKILL);  // culprit leaves the robot running
 
-  EXPECT_THAT(said_by({"log", "--journal", journal}),
+  EXPECT_THAT(said_by({"log", "--all", "--journal", journal}),
               AllOf(HasSubstr("CameraGone detected"), HasSubstr("camera is to be active")));
+  EXPECT_THAT(said_by({"log", "--journal", journal}),
+              AllOf(HasSubstr("CameraGone detected"), testing::Not(HasSubstr("is to be active"))));
   const std::string why = said_by({"explain", "--last", "--journal", journal});
   EXPECT_THAT(why, HasSubstr("camera_redeploy"));
   EXPECT_THAT(why, HasSubstr("Strategies compared"));

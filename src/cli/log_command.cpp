@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <deque>
+#include <functional>
 #include <memory>
 #include <thread>
 
@@ -9,7 +11,9 @@
 #include "base/live_clock.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
+#include "journal/json.h"
 #include "json/json.h"
+#include "knowledge/event_words.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
@@ -22,6 +26,7 @@ struct LogOptions {
   std::string kind;
   std::string component;
   bool follows = false;
+  bool all = false;
   bool json = false;
 };
 
@@ -33,26 +38,60 @@ bool names_it(const Json& document, const std::string& name) {
                      [&](const Json& each) { return names_it(each, name); });
 }
 
-void print_row(const journal::Entry& entry, const LogOptions& options, std::int64_t earliest) {
-  if (entry.at < earliest || (!options.kind.empty() && entry.kind != options.kind)) return;
-  if (!options.component.empty() && !names_it(parse_json(entry.body), options.component)) return;
-  const std::string line = options.json ? to_line(log_document(entry)) : log_line(entry);
-  if (!line.empty()) fmt::print("{}\n", line);
+// A row of culprit's own bookkeeping, or one that repeats another.
+bool is_detail(const journal::Entry& entry, const Json& body) {
+  namespace kind = journal::kind;
+  const std::string type = journal::text_of(body, "type");
+  if (entry.kind == kind::kEvent)
+    return type == words_of<LifecycleIntended>().name || type == words_of<IncidentChanged>().name;
+  if (entry.kind == kind::kOutcome)
+    return journal::text_of(body, "outcome") == journal::to_string(Outcome::kDone);
+  return entry.kind == kind::kRobot || entry.kind == kind::kCoupling ||
+         entry.kind == kind::kLatency;
 }
 
-// Prints the rows from `from` on. Gives the number of the row behind them.
-Expected<std::int64_t> print_rows(const journal::Reader& journal, std::int64_t from,
-                                  const LogOptions& options, std::int64_t earliest) {
+// The row as it is printed; empty: it is not.
+std::string line_of(const journal::Entry& entry, const LogOptions& options, std::int64_t earliest) {
+  if (entry.at < earliest || (!options.kind.empty() && entry.kind != options.kind)) return "";
+  const Json body = parse_json(entry.body);
+  if (!options.component.empty() && !names_it(body, options.component)) return "";
+  if (options.json) return to_line(log_document(entry));
+  const bool shows_details = options.all || !options.kind.empty();
+  return !shows_details && is_detail(entry, body) ? "" : log_line(entry);
+}
+
+// Calls `look` for each row from `from` on. Gives the number of the row behind them.
+Expected<std::int64_t> each_row(const journal::Reader& journal, std::int64_t from,
+                                const std::function<void(const journal::Entry&)>& look) {
   auto rows = journal.entries(journal::Which::kReadable, from);
   if (!rows) return Error{rows.error()};
   journal::Entry entry;
   auto more = rows->next(entry);
   for (; more && *more; more = rows->next(entry)) {
-    print_row(entry, options, earliest);
+    look(entry);
     from = entry.id + 1;
   }
   if (!more) return Error{more.error()};
   return from;
+}
+
+// The row from which on as many lines come as are wanted.
+Expected<std::int64_t> first_of_latest(const journal::Reader& journal, const LogOptions& options) {
+  const auto wanted = static_cast<std::size_t>(options.lines);
+  for (std::int64_t count = options.lines;; count *= 4) {
+    const auto from = journal.tail(count);
+    if (!from) return Error{from.error()};
+    std::int64_t read = 0;
+    std::deque<std::int64_t> latest;
+    const auto end = each_row(journal, *from, [&](const journal::Entry& entry) {
+      ++read;
+      if (!line_of(entry, options, INT64_MIN).empty()) latest.push_back(entry.id);
+      if (latest.size() > wanted) latest.pop_front();
+    });
+    if (!end) return Error{end.error()};
+    if (latest.size() == wanted) return latest.front();
+    if (read < count) return *from;  // there are no more
+  }
 }
 
 int show(const LogOptions& options) {
@@ -66,11 +105,14 @@ int show(const LogOptions& options) {
   if (!journal) return fail(journal.error());
   const bool is_bounded =
       options.since.empty() && options.kind.empty() && options.component.empty();
-  auto from = is_bounded ? journal->tail(options.lines) : Expected<std::int64_t>(1);
+  auto from = is_bounded ? first_of_latest(*journal, options) : Expected<std::int64_t>(1);
   if (!from) return fail(from.error());
   for (;;) {
     constexpr auto kPeriod = std::chrono::milliseconds(300);
-    from = print_rows(*journal, *from, options, earliest);
+    from = each_row(*journal, *from, [&](const journal::Entry& entry) {
+      const std::string line = line_of(entry, options, earliest);
+      if (!line.empty()) fmt::print("{}\n", line);
+    });
     if (!from) return fail(from.error());
     if (!options.follows) return kOk;
     std::fflush(stdout);
@@ -98,6 +140,8 @@ void add_log(CLI::App& app, int& exit_code) {
       ->add_option("--component", options->component,
                    "Only rows that name this component, without the limit of --lines")
       ->type_name("COMPONENT");
+  command->add_flag("--all", options->all,
+                    "Also details: answers to requests, changes of incidents, internal records");
   command->add_flag("-f,--follow", options->follows, "Go on with new rows until Ctrl-C");
   command->add_flag("--json", options->json, "One JSON document per row");
   command->callback([options, &exit_code] { exit_code = show(*options); });
