@@ -197,7 +197,8 @@ TEST_F(Composed, WhatAKilledCulpritLeftUnfinishedIsFinishedOnce) {
   end_box(culprit);
 }
 
-// Sets the detector's gain from outside, as a person does with `ros2 param set`.
+// Sets the detector's gain from outside, and unloads, as a person does with `ros2 param set` and
+// `ros2 component unload`.
 class Person {
  public:
   Person() {
@@ -206,6 +207,9 @@ class Person {
     context_ = std::move(*context);
     node_ = std::move(*ros2::Node::create(*context_, {"/", "person"}));
     set_ = std::move(*node_->create_client<ros2::srv::SetParameters>("/detector/set_parameters"));
+    list_ = std::move(*node_->create_client<ros2::srv::ListNodes>("/box/_container/list_nodes"));
+    unload_ =
+        std::move(*node_->create_client<ros2::srv::UnloadNode>("/box/_container/unload_node"));
     thread_ = std::thread([this] { executor_.run(); });
   }
   ~Person() {
@@ -219,14 +223,54 @@ class Person {
                [&](const auto&) { done.set_value(); });
     done.get_future().wait();
   }
+  // Whether the box had it, and unloads it.
+  bool unloads(const std::string& node) {
+    std::promise<std::uint64_t> listed;
+    list_->call({}, ros2::Repeat::kUntilAnswered, 10s, [&](const auto& answer) {
+      std::uint64_t id = 0;
+      for (std::size_t i = 0; answer.response && i < answer.response->unique_ids.size(); ++i) {
+        if (answer.response->full_node_names[i] == node) id = answer.response->unique_ids[i];
+      }
+      listed.set_value(id);
+    });
+    const std::uint64_t id = listed.get_future().get();
+    if (id == 0) return false;
+    std::promise<bool> done;
+    unload_->call({id}, ros2::Repeat::kNever, 10s, [&](const auto& answer) {
+      done.set_value(answer.response && answer.response->success);
+    });
+    return done.get_future().get();
+  }
 
  private:
   ros2::Executor executor_;
   std::unique_ptr<ros2::Context> context_;
   std::unique_ptr<ros2::Node> node_;
   std::unique_ptr<ros2::Client<ros2::srv::SetParameters>> set_;
+  std::unique_ptr<ros2::Client<ros2::srv::ListNodes>> list_;
+  std::unique_ptr<ros2::Client<ros2::srv::UnloadNode>> unload_;
   std::thread thread_;
 };
+
+// As `ros2 component unload`: the container goes on, so nothing crashed.
+TEST_F(Composed, WhatAPersonUnloadsStaysDownUntilAPersonOrdersOtherwise) {
+  auto container = box();
+  const auto culprit = run(rules("") + kGone, {"--settle", "0.5"});
+  ASSERT_TRUE(culprit.prints("detector is there (process ")) << culprit.output();
+  ASSERT_TRUE(culprit.prints("watching")) << culprit.output();
+  Person person;
+  std::this_thread::sleep_for(1s);
+  ASSERT_TRUE(person.unloads("/detector")) << container.output();
+  EXPECT_TRUE(culprit.prints("detector stays down: it was unloaded, and not by culprit"))
+      << culprit.output();
+  std::this_thread::sleep_for(4s);  // that nothing happens takes time
+  EXPECT_THAT(container.output(), Not(HasSubstr("\nloaded"))) << culprit.output();
+  TestProgram revive(world, {"culprit", "revive"});
+  revive.wait();
+  EXPECT_TRUE(culprit.prints("DetectorGone resolved by detector_redeploy")) << culprit.output();
+  EXPECT_THAT(container.output(), HasSubstr("unloaded /detector\nloaded /detector\n"));
+  EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
+}
 
 // CULPRIT_CHAOS_KILLS says how often (scripts/chaos), CULPRIT_CHAOS_SEED when.
 TEST_F(Composed, CulpritMayBeKilledAtAnyInstantOfAReload) {

@@ -24,6 +24,7 @@ struct NumberOf {
   Number operator()(const HostReached& o) const { return o.component.index; }
   Number operator()(const TimeHeld& o) const { return o.component.index; }
   Number operator()(const StartBarred& o) const { return o.component.index; }
+  Number operator()(const Unloaded& o) const { return o.component.index; }
   Number operator()(const LivesOn& o) const { return o.component.index; }
   Number operator()(const EndsWith& o) const { return o.component.index; }
   Number operator()(const ParametersListed& o) const { return o.component.index; }

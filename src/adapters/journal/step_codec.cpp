@@ -50,7 +50,7 @@ using ObservationKinds =
           Kind<26, PriorsTold>, Kind<27, LivesOn>, Kind<28, HostHeard>, Kind<29, ListenerKnown>,
           Kind<30, StartedHere>, Kind<31, UsageSeen>, Kind<32, StartBarred>,
           Kind<33, PublisherKnown>, Kind<34, GoalsSeen>, Kind<35, LogSeen>, Kind<36, TimeHeld>,
-          Kind<37, ClockStepped>, Kind<kSampleArrivedLostHere, SampleArrived>>;
+          Kind<37, ClockStepped>, Kind<kSampleArrivedLostHere, SampleArrived>, Kind<39, Unloaded>>;
 using OrderKinds =
     Kinds<Kind<1, Pause>, Kind<2, Resume>, Kind<3, SetDryRun>, Kind<4, Approve>, Kind<5, Refuse>,
           Kind<6, Silence>, Kind<7, LiftSilence>, Kind<8, RunStrategy>, Kind<9, Forget>,
@@ -165,6 +165,7 @@ class Fields {
   }
   void of(Of<ParametersListed> o) { codec_.id(o.component), texts(o.names); }
   void of(Of<StartBarred> o) { codec_.id(o.component), codec_.text(o.missing); }
+  void of(Of<Unloaded> o) { codec_.id(o.component); }
   void of(Of<ListenerKnown> o) { codec_.id(o.topic); }
   void of(Of<PublisherKnown> o) { codec_.text(o.status), codec_.text(o.node); }
   void of(Of<PriorsTold> o) {

@@ -72,7 +72,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 35)) {
+  switch (*rc::gen::inRange(0, 36)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -151,6 +151,8 @@ ObservationWhat anything() {
       return TimeHeld{component, *rc::gen::arbitrary<bool>()};
     case 33:
       return ClockStepped{*rc::gen::element(Duration(-3600), Duration(2))};
+    case 34:
+      return Unloaded{component};
     default:
       return LinkTrouble{text};
   }

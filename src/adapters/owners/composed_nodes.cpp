@@ -117,7 +117,9 @@ void ComposedNodes::observe(const Observation& observation) {
     for (const auto& each : containers_) {
       if (each->node == gone->node) left_[gone->node] = observation.at;
       for (const ComponentId part : each->parts) {
-        if (rules_[part].node == gone->node) lives_[part].left = observation.at;
+        if (rules_[part].node != gone->node) continue;
+        lives_[part].left = observation.at;
+        each->has_news |= !lives_[part].is_taken;
       }
     }
   } else {
@@ -232,7 +234,25 @@ void ComposedNodes::look_for_missing(Container& container) {
 // Lists the container's nodes before it can hang.
 void ComposedNodes::look(Container& container) {
   const Process process = process_of(container.node);
-  if (process.is_there && process.pid != 0) list(container, process.pid, kAnswer);
+  if (!process.is_there || process.pid == 0) return;
+  if (list(container, process.pid, kAnswer).outcome != Outcome::kDone) return;
+  for (const ComponentId part : take_unloaded(container, process.pid)) inbox_.put(Unloaded{part});
+}
+
+// Those that the process had when it lost their nodes, and that it does not list any more.
+std::vector<ComponentId> ComposedNodes::take_unloaded(const Container& container, int pid) {
+  std::vector<ComponentId> unloaded;
+  const MutexLock lock(mutex_);
+  for (const ComponentId part : container.parts) {
+    const std::string& node = rules_[part].node;
+    const auto life = lives_.find(part);
+    const bool has_left = life != lives_.end() && life->second.pid == pid && life->second.left &&
+                          !life->second.is_taken && !nodes_.contains(node);
+    if (!has_left || container.listed->contains(node)) continue;
+    lives_.erase(life);
+    unloaded.push_back(part);
+  }
+  return unloaded;
 }
 
 ContainerAnswer ComposedNodes::list(Container& container, int pid, Duration patience) {
@@ -342,6 +362,10 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
   if (ids.empty() && process_of(part.node).is_there)
     return {Outcome::kRefused, container.node + " does not list " + part.name +
                                    ", so it did not load it and cannot unload it"};
+  if (!ids.empty()) {
+    const MutexLock lock(mutex_);
+    lives_[errand.component] = {.pid = pid, .is_taken = true};
+  }
   for (const std::uint64_t id : ids) {
     const ContainerAnswer answer = services_.unload(container.node, pid, id, kUnload);
     if (!has_process(pid)) return {};

@@ -11,6 +11,9 @@
 // for whatever reason, culprit loads its former components when it starts the container. A
 // component that somebody unloaded on purpose before is not loaded.
 //
+// If somebody else unloads a component, its node leaves the graph, and its container goes on and does
+// not list it: that is reported (Unloaded). A component cannot crash without its container.
+//
 // A stop names the process that it is meant for. Once that process has exited, the stop is done,
 // and nothing is unloaded from the container's successor.
 //
@@ -113,6 +116,7 @@ class ComposedNodes {
   struct Life {
     int pid = 0;
     std::optional<Time> left{};  // the graph, since
+    bool is_taken = false;       // culprit has it unloaded there
   };
   struct Answer {
     Outcome outcome = Outcome::kDone;
@@ -122,6 +126,7 @@ class ComposedNodes {
 
   void run(Container& container);
   void look(Container& container);
+  std::vector<ComponentId> take_unloaded(const Container& container, int pid);
   void note_missing(Container& container, ComponentId part, const std::string& what);
   void look_for_missing(Container& container);
   void put(Errand errand);

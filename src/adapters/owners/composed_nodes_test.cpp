@@ -136,6 +136,19 @@ class OneContainer : public ContainerServices {
     return std::nullopt;
   }
 
+  // Whether one is reported as unloaded by somebody else within that time.
+  bool reports_unloaded(ComponentId component, Duration within = 60s) {
+    for (const Time end = later(live_now(), within); live_now() < end;) {
+      std::vector<Observation> seen;
+      inbox.take(end, seen);
+      for (const Observation& each : seen) {
+        const auto* unloaded = std::get_if<Unloaded>(&each.what);
+        if (unloaded != nullptr && unloaded->component == component) return true;
+      }
+    }
+    return false;
+  }
+
   ContainerAnswer list(const std::string&, int, Duration) override {
     const std::lock_guard lock(mutex);
     if (listing.outcome != Outcome::kDone) return listing;
@@ -320,6 +333,29 @@ TEST(ComposedNodes, WhatWasUnloadedLongBeforeTheContainerEndedIsNotLoaded) {
   EXPECT_EQ(robot.start(kDetector).outcome, Outcome::kDone);
   EXPECT_EQ(robot.start(kDetector).outcome, Outcome::kDone);
   EXPECT_THAT(robot.what_was_done(), ElementsAre("begin", "end", "begin", "load detector"));
+}
+
+TEST(ComposedNodes, WhatSomebodyElseUnloadedIsReportedOnceAndNotLoadedWithTheOthers) {
+  OneContainer robot;
+  robot.begin({"/detector", "/tracker"});
+  robot.unload("/box", robot.pid, 2, 1s);
+  EXPECT_TRUE(robot.reports_unloaded(kTracker));
+  robot.appears("/planner");  // so that the container is asked once more
+  EXPECT_FALSE(robot.reports_unloaded(kTracker, 2s));
+  robot.end();
+  EXPECT_EQ(robot.start(kDetector).outcome, Outcome::kDone);
+  EXPECT_EQ(robot.start(kDetector).outcome, Outcome::kDone);
+  EXPECT_THAT(robot.what_was_done(),
+              ElementsAre("begin", "unload /tracker", "end", "begin", "load detector"));
+}
+
+TEST(ComposedNodes, NoneIsReportedAsUnloadedThatTheContainerListsOrCulpritUnloaded) {
+  OneContainer robot;
+  robot.begin({"/detector", "/tracker"});
+  robot.vanishes("/tracker");  // its node has left the graph, and the container has it
+  EXPECT_FALSE(robot.reports_unloaded(kTracker, 2s));
+  EXPECT_EQ(robot.stop(kDetector).outcome, Outcome::kDone);
+  EXPECT_FALSE(robot.reports_unloaded(kDetector, 2s));
 }
 
 TEST(ComposedNodes, WhatAnEarlierRunSawInAProcessThatHasEndedIsLoadedToo) {

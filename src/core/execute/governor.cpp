@@ -379,8 +379,11 @@ std::vector<StrategyId> Governor::last_resorts_behind(const Order& order) const 
 
 std::optional<Governor::Held> Governor::departure(const Strategy& strategy, Time now) const {
   for (const ComponentId component : strategy.components) {
-    const auto departure = knowledge_.departures.of(component, now);
-    if (departure) return in_words(*departure, knowledge_.rules[component].name);
+    const auto home = container_of(component, knowledge_.rules);  // it would be started, too
+    for (const ComponentId each : {component, home.value_or(component)}) {
+      const auto departure = knowledge_.departures.of(each, now);
+      if (departure) return in_words(*departure, knowledge_.rules[each].name);
+    }
     const Time until = comes_up_by(component);
     if (now < until) return is_back(knowledge_.rules[component].name, until);
   }

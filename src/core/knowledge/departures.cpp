@@ -15,7 +15,7 @@ constexpr Duration kOneEnd = std::chrono::milliseconds(100);
 
 Departures::Departures(const RuleSet& rules) : members_(rules.components.size()) {
   for (std::size_t c = 0; c < rules.components.size(); ++c)
-    members_[c].has_owner = rules.components[c].has_owner();
+    members_[c].has_owner = rules.components[c].has_owner() || rules.components[c].composed;
 }
 
 const Departures::Launch* Departures::launch_of(ComponentId component) const {
@@ -159,6 +159,15 @@ void Departures::goes_on(ComponentId component, Time at) {
   Member& member = members_[component.index];
   if (member.down != StaysDown::Why::kStopped) return;
   member.down.reset();
+  member.back = at;
+}
+
+// Its process is the same, and so is its launch.
+void Departures::loaded(ComponentId component, Time at) {
+  Member& member = members_[component.index];
+  if (member.down != StaysDown::Why::kUnloaded) return;
+  member.down.reset();
+  member.has_left = false;
   member.back = at;
 }
 

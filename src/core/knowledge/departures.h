@@ -62,12 +62,15 @@ class Departures {
   void ended_here(ComponentId component, Time at);
   // It is gone for an unknown reason.
   void lost(ComponentId component);
-  // A person had its owner end it (systemctl stop, docker stop), shut its node down, or stopped its process.
+  // A person had its owner end it (systemctl stop, docker stop), shut its node down, stopped its process, or unloaded
+  // it from its container.
   void ended_by_order(ComponentId component, StaysDown::Why why);
   // Its node is not shut down any more.
   void is_up(ComponentId component);
   // Its process runs: if a person had stopped it, it goes on.
   void goes_on(ComponentId component, Time at);
+  // Its node is there again: if a person had unloaded it, somebody loaded it again.
+  void loaded(ComponentId component, Time at);
 
   // ---- orders
 
@@ -154,7 +157,7 @@ class Departures {
     bool is_there = false;
     bool has_left = false;
     bool has_crashed = false;  // that was how it left
-    bool has_owner = false;    // UNIT, CONTAINER
+    bool has_owner = false;    // UNIT, CONTAINER, IN
     int started_pid = 0;       // that culprit started last
     Time since{};              // when it did
     bool is_ours = false;      // the process that is there, or was last

@@ -227,6 +227,10 @@ class Describer {
         return down + "a person stopped " + (is_one ? "it" : "them") +
                " in a terminal (Ctrl-Z); continue there (fg), or let culprit replace " +
                (is_one ? "it" : "them") + ": culprit revive";
+      case StaysDown::Why::kUnloaded:
+        return down + (is_one ? "it was" : "they were") +
+               " unloaded, and not by culprit, and the container goes on; load " +
+               (is_one ? "it" : "them") + " again, or let culprit do it: culprit revive";
       case StaysDown::Why::kOrder:
         return down + "a person ended the processes that culprit had started" + remedy;
     }
@@ -450,6 +454,8 @@ std::string describe(const Departures::Departure& departure, const std::string& 
       return "the node of " + component + " was shut down";
     case StaysDown::Why::kStopped:
       return "a person stopped " + component + " in a terminal (Ctrl-Z)";
+    case StaysDown::Why::kUnloaded:
+      return component + " was unloaded from its container, and not by culprit";
     case StaysDown::Why::kOrder:
       return "a person ended " + component + ", which culprit had started";
   }

@@ -16,6 +16,8 @@ std::string_view to_string(StaysDown::Why why) {
       return "shut_down";
     case StaysDown::Why::kStopped:
       return "stopped";
+    case StaysDown::Why::kUnloaded:
+      return "unloaded";
     case StaysDown::Why::kOrder:
       return "order";
   }
@@ -25,7 +27,7 @@ std::string_view to_string(StaysDown::Why why) {
 std::optional<StaysDown::Why> reason_named(std::string_view name) {
   using enum StaysDown::Why;
   for (const StaysDown::Why each :
-       {kPerson, kDoubt, kUnseen, kOwner, kShutDown, kStopped, kOrder}) {
+       {kPerson, kDoubt, kUnseen, kOwner, kShutDown, kStopped, kUnloaded, kOrder}) {
     if (to_string(each) == name) return each;
   }
   return std::nullopt;

@@ -19,6 +19,7 @@ struct StaysDown {
     kOwner,     // its owner was told to end it (systemctl stop, docker stop)
     kShutDown,  // its node was shut down (ros2 lifecycle set … shutdown)
     kStopped,   // a person stopped its process in its terminal (Ctrl-Z)
+    kUnloaded,  // a person unloaded it from its container (ros2 component unload)
     kOrder      // a person ordered culprit to end what it had started
   };
   std::vector<ComponentId> components;
@@ -28,7 +29,7 @@ struct StaysDown {
   Duration after{};                   // kDoubt: so long before the launch began to end
 };
 
-// "person", "doubt", "unseen", "owner", "shut_down", "stopped", "order"
+// "person", "doubt", "unseen", "owner", "shut_down", "stopped", "unloaded", "order"
 std::string_view to_string(StaysDown::Why why);
 std::optional<StaysDown::Why> reason_named(std::string_view name);
 

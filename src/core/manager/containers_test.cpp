@@ -117,6 +117,59 @@ TEST(AContainer, ThatRunsIsNotHeldResponsibleForAComponentOfIt) {
   EXPECT_FALSE(robot.was_asked("box: stop process")) << transcript(robot);
 }
 
+// As `ros2 component unload` does.
+void unload_by_hand(TestRobot& robot, const std::string& name) {
+  robot[name].is_in_graph = false;
+  robot.tell(NodeVanished{"/" + name});
+  robot.run_for(600ms);
+  robot.tell(Unloaded{robot.id(name)});
+}
+
+TEST(AContainer, FromWhichAPersonUnloadedAComponentIsNotAskedToLoadIt) {
+  TestRobot robot = robot_with_box(std::string(kPartsGone) + kBoxGone);
+  unload_by_hand(robot, "detector");
+  robot.run_for(1min);
+  EXPECT_FALSE(robot.was_asked("detector: st")) << transcript(robot);
+  EXPECT_EQ(robot.count("detector stays down: it was unloaded, and not by culprit"), 1u)
+      << transcript(robot);
+  robot.order({1, "ann", "", Revive{}});
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.was_asked("detector: start process")) << transcript(robot);
+  EXPECT_TRUE(robot.works("detector")) << transcript(robot);
+}
+
+TEST(AContainer, IntoWhichAPersonLoadsAComponentAgainIsAsAnyOther) {
+  TestRobot robot = robot_with_box(std::string(kPartsGone) + kBoxGone);
+  unload_by_hand(robot, "detector");
+  robot.run_for(5s);
+  robot["detector"].is_in_graph = true;
+  robot.tell(NodeAppeared{"/detector", robot["detector"].pid});
+  robot.run_for(Departures::kBack + 5s);
+  EXPECT_FALSE(robot.was_asked("detector: st")) << transcript(robot);
+  robot["detector"].is_in_graph = false;
+  robot.tell(NodeVanished{"/detector"});
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.was_asked("detector: start process")) << transcript(robot);
+}
+
+// The component was of no launch any more.
+TEST(AContainer, ThatAPersonEndedIsNotStartedForAComponentThatWasRevived) {
+  constexpr int kLauncher = 50;
+  TestRobot robot = robot_with_box(kPartsGone);
+  for (const std::string name : {"box", "detector", "tracker"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, false});
+  unload_by_hand(robot, "detector");
+  robot.order({1, "ann", "", Revive{}});
+  robot.run_for(20s);
+  ASSERT_TRUE(robot.works("detector")) << transcript(robot);
+  robot.asked.clear();
+  for (const std::string name : {"detector", "tracker", "box"}) robot.leave(name);
+  for (const std::string name : {"box", "tracker"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
+  robot.run_for(1min);
+  EXPECT_FALSE(robot.was_asked("start process")) << transcript(robot);
+}
+
 // It did not answer the request to unload a component. It was the last of its launch, which ends.
 TEST(AContainer, ThatCulpritReplacesForAComponentWasNotEndedByAPerson) {
   constexpr int kLauncher = 50;

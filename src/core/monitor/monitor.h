@@ -193,6 +193,7 @@ class Monitor {
   void on(Time at, const EndsWith& seen);
   void on(Time at, const LauncherSeen& seen);
   void on(Time at, const StartedHere& seen);
+  void on(Time at, const Unloaded& seen);
   void settle_departures(Time now);
   void on(Time, const Reply&) {}  // the executor's
   void on(Time, const Order&) {}  // the governor's

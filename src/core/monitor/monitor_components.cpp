@@ -73,6 +73,7 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   // On another computer, or in a container: no process of it is reported.
   if (seen.pid == 0 && knowledge_.departures.stays_down(*component))
     write_.departures.arrived(*component, 0, at, Departures::By::kOther);
+  write_.departures.loaded(*component, at);
   if (state.process == ProcessState::kRunning) note_no_longer_dead(*component);
   if (!same_process || !was_in_graph) await_ends(*component, at);
   if (!state.in_graph) return;  // the others have as long to come as its ends

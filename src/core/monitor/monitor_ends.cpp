@@ -58,6 +58,12 @@ bool Monitor::is_being_ended(ComponentId component) const {
 
 void Monitor::on(Time at, const StartedHere& seen) { write_.departures.started_here(seen, at); }
 
+void Monitor::on(Time, const Unloaded& seen) {
+  if (knowledge_.components[seen.component].in_graph) return;  // it was loaded again meanwhile
+  if (is_ended_here(seen.component, knowledge_)) return;
+  write_.departures.ended_by_order(seen.component, StaysDown::Why::kUnloaded);
+}
+
 // Whether a person ended it is known once its launcher has ended, too.
 void Monitor::settle_departures(Time now) {
   Departures::Settled settled = write_.departures.settle(now);

@@ -159,6 +159,12 @@ struct UsageSeen {
   double mib = 0;
 };
 
+// Somebody else unloaded the component from its container: the container's process goes on, and does
+// not list the component any more.
+struct Unloaded {
+  ComponentId component;
+};
+
 // How far the goals of an action are: all that its server remembers. `topic` is that of their status.
 struct GoalsSeen {
   struct Goal {
@@ -322,7 +328,7 @@ class ObservationWhat
                           HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
                           ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
                           HostHeard, ListenerKnown, StartedHere, UsageSeen, StartBarred,
-                          PublisherKnown, GoalsSeen, LogSeen, TimeHeld, ClockStepped> {
+                          PublisherKnown, GoalsSeen, LogSeen, TimeHeld, ClockStepped, Unloaded> {
  public:
   using Variant = variant;
   using variant::variant;

@@ -99,6 +99,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(held->component, components_);
   } else if (auto* barred = std::get_if<StartBarred>(&out.what)) {
     is_known = renumber(barred->component, components_);
+  } else if (auto* unloaded = std::get_if<Unloaded>(&out.what)) {
+    is_known = renumber(unloaded->component, components_);
   } else if (auto* lives = std::get_if<LivesOn>(&out.what)) {
     is_known = renumber(lives->component, components_);
   } else if (auto* ends = std::get_if<EndsWith>(&out.what)) {
