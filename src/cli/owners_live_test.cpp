@@ -142,6 +142,29 @@ TEST_F(NodesOfARealSystemd, ThatHaveALaunchInTheRulesAreToldToBeUnits) {
       << culprit.output();
 }
 
+// As nodes in Python, whose exit code after SIGTERM is often 1: for systemd the unit failed.
+TEST_F(NodesOfARealSystemd, ThatSystemctlStopsStayDownWhateverTheirExitCode) {
+  const std::string script = (systemd->folder() / "node.sh").string();
+  std::ofstream(script) << node() << " &\ntrap 'kill $!; wait; exit 1' TERM\nwait\nexit 1\n";
+  start("/bin/sh " + script, "");
+  const auto culprit = run();
+  const int old = another(culprit, 0);
+  ASSERT_NE(old, 0) << culprit.output();
+  ASSERT_TRUE(culprit.prints("watching")) << culprit.output();
+  std::this_thread::sleep_for(2s);  // culprit has seen that its unit runs
+  owners::SystemdBus bus(owners::SystemdBus::Whose::kUser);
+  ASSERT_TRUE(bus.stop("lidar.service", 0s));
+  EXPECT_TRUE(culprit.prints("lidar stays down: its owner ended it")) << culprit.output();
+  const auto state = bus.state_of("lidar.service");
+  ASSERT_TRUE(state) << state.error();
+  EXPECT_EQ(state->activity, owners::UnitState::Activity::kFailed);
+  std::this_thread::sleep_for(3s);  // that nothing happens takes time
+  EXPECT_EQ(systemd->starts_of("lidar.service"), 1) << culprit.output();
+  TestProgram revive(world, {"culprit", "revive"});
+  revive.wait();
+  EXPECT_NE(another(culprit, old), 0) << culprit.output();
+}
+
 // systemd was asked for both, the end and the start.
 TEST_F(NodesOfARealSystemd, ComeBackAlsoIfCulpritIsKilledInBetween) {
   start("");

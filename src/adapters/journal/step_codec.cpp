@@ -76,7 +76,7 @@ class Fields {
   void of_kind(std::uint8_t number, T& o) {
     of(o);
     if constexpr (std::is_same_v<std::remove_const_t<T>, ProcessSeen>) {
-      if (number == kProcessSeenWithCause) codec_.word(o.cause, Cause::kOrder);
+      if (number == kProcessSeenWithCause) codec_.word(o.cause, Cause::kDoubt);
     }
     if constexpr (std::is_same_v<T, SampleArrived>) o.lost_here = number == kSampleArrivedLostHere;
   }

@@ -94,7 +94,7 @@ ObservationWhat anything() {
       return LifecycleRead{component, Lifecycle::kTransition, *rc::gen::arbitrary<bool>()};
     case 9:
       return ProcessSeen{component, ProcessState::kStopped, 7, text,
-                         static_cast<Cause>(*rc::gen::inRange(0, 4))};
+                         static_cast<Cause>(*rc::gen::inRange(0, 5))};
     case 10:
       return Probed{component, *rc::gen::arbitrary<bool>(),
                     *rc::gen::inRange<std::uint8_t>(0, 128)};

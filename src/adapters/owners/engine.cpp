@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <optional>
 #include <poll.h>
+#include <sstream>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -80,6 +82,15 @@ std::optional<T> member(const Json& object, const char* name) {
     if (!value.is_number_integer()) return std::nullopt;
   }
   return value.get<T>();
+}
+
+// Whether the event is about such a signal. A stop sends that of the image (STOPSIGNAL) before it kills.
+bool asks_to_end(const Json& event) {
+  const Json& actor = event.contains("Actor") ? event["Actor"] : event;
+  if (!actor.is_object() || !actor.contains("Attributes")) return false;
+  const auto signal = member<std::string>(actor["Attributes"], "signal");
+  return signal == std::to_string(SIGTERM) || signal == std::to_string(SIGINT) ||
+         signal == std::to_string(SIGQUIT);
 }
 
 }  // namespace
@@ -238,19 +249,17 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
     state.activity = Activity::kDeactivating;
   } else if (*status == "created" || *status == "configured" || *status == "exited" ||
              *status == "stopped" || *status == "dead") {
-    // Signals are how somebody stops it on purpose, too.
     constexpr std::int64_t kKilled = 137;
-    constexpr std::array<std::int64_t, 3> kBySignal = {130, kKilled, 143};
+    constexpr std::array<std::int64_t, 3> kWanted = {0, 130, 143};
     const bool is_out_of_memory = member<bool>(said, "OOMKilled").value_or(false);
-    const bool may_be_wanted =
-        *code == 0 || std::find(kBySignal.begin(), kBySignal.end(), *code) != kBySignal.end();
-    state.main_pid = 0;
-    state.activity = is_out_of_memory || !may_be_wanted ? Activity::kFailed : Activity::kInactive;
-    // A stop kills what has not ended after its grace.
-    if (*code == kKilled && !told_to_stop_.contains(container))
+    const bool is_wanted = std::ranges::find(kWanted, *code) != kWanted.end();
+    // A process may answer a stop with an error, and is killed after its grace.
+    if (!is_wanted && !told_to_stop_.contains(container))
       told_to_stop_[container] = was_told_to_stop(container);
-    state.is_orderly =
-        state.activity == Activity::kInactive && (*code != kKilled || told_to_stop_[container]);
+    state.is_orderly = !is_out_of_memory && (is_wanted || told_to_stop_[container]);
+    const bool is_failed = !state.is_orderly && *code != kKilled;
+    state.main_pid = 0;
+    state.activity = is_out_of_memory || is_failed ? Activity::kFailed : Activity::kInactive;
     state.result = is_out_of_memory ? "out of memory" : "exit code " + std::to_string(*code);
   } else {
     return Error{name() + " says that " + container + " is '" + one_line(*status) +
@@ -261,8 +270,8 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
   return state;
 }
 
-// The engine keeps its last events. It sends one for a stop, once the container has ended, and none for a kill. A restart is a
-// stop and a start: a stop before the last start is not the one that ended it.
+// The engine keeps its last events: one for each signal that it sent, and one for a stop, once the container has ended. A
+// start after them, as in a restart by culprit, begins anew.
 bool Engine::was_told_to_stop(const std::string& container) {
   constexpr std::int64_t kMomentAgo = 30;  // seconds
   constexpr std::int64_t kNanoseconds = 1'000'000'000;
@@ -273,12 +282,18 @@ bool Engine::was_told_to_stop(const std::string& container) {
                           "/events?since=" + std::to_string(now / kNanoseconds - kMomentAgo) +
                               "&until=" + std::to_string(now / kNanoseconds) + "." + part +
                               "&filters=%7B%22container%22:%5B%22" + container +
-                              "%22%5D,%22event%22:%5B%22start%22,%22stop%22%5D%7D",
+                              "%22%5D,%22event%22:%5B%22kill%22,%22start%22,%22stop%22%5D%7D",
                           kPatience);
   if (!answer || answer->status != 200) return false;
-  const std::string all = answer->body.substr(0, answer->body.find_last_not_of("\r\n") + 1);
-  const Json last = parse_json(all.substr(all.rfind('\n') + 1));
-  return member<std::string>(last, "Action") == "stop";
+  std::istringstream events(answer->body);
+  bool is_told = false;
+  for (std::string line; std::getline(events, line);) {
+    const Json event = parse_json(line);
+    const auto action = member<std::string>(event, "Action");
+    is_told = action == "stop" || (action == "kill" && asks_to_end(event)) ||
+              (is_told && action != "start");
+  }
+  return is_told;
 }
 
 Expected<void> Engine::change(const std::string& container, const std::string& what,

@@ -341,6 +341,10 @@ std::optional<Identity> identity_of(int pid) {
   return Identity{users->effective, program, script};
 }
 
+bool runs_python(const Identity& identity) {
+  return fs::path(identity.program).filename().native().starts_with("python");
+}
+
 std::string to_string(const Identity& identity) {
   return identity.program + (identity.script.empty() ? "" : " " + identity.script) + " of user " +
          std::to_string(identity.user);

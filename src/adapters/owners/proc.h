@@ -91,6 +91,7 @@ struct Identity {
 };
 // Nothing: there is no such process, or it is not visible.
 std::optional<Identity> identity_of(int pid);
+bool runs_python(const Identity& identity);
 // "/usr/bin/python3 /opt/ros/bin/ros2 of user 1000"
 std::string to_string(const Identity& identity);
 

@@ -16,6 +16,10 @@ struct ProcessEnd {
   Cause cause = Cause::kUnknown;
 };
 
+// With which Python exits after an exception. A node in Python may raise one because of SIGINT or SIGTERM: its context is
+// shut down a second time, or it does not catch ExternalShutdownException.
+constexpr int kExceptionInPython = 1;
+
 // SIGINT, SIGTERM, SIGHUP and SIGQUIT are how people and launchers ask; so are the exit codes with
 // which programs pass on that it was one of these (130, 143; ros2 run gives 254, 241).
 ProcessEnd exited(int code);

@@ -27,7 +27,8 @@ struct UnitState {
   std::string load_state;  // "loaded", "not-found", "masked", ...
   std::string result;      // how it ended: "success", "exit-code", "start-limit-hit", ...
 
-  bool is_orderly = false;  // kInactive: it ended as on an order, not by SIGKILL or an error
+  // It ended as on an order, or on one that it answered with an error; not by itself with an error or SIGKILL.
+  bool is_orderly = false;
 
   bool is_over() const { return activity == Activity::kInactive || activity == Activity::kFailed; }
 };

@@ -207,6 +207,15 @@ void Units::look_at(ComponentId component, const UnitState& state) {
   if (runs_anew) ended_here_.erase(ended_here);
 }
 
+// The kernel reports an end sooner than it is known that a person had ordered it.
+bool Units::is_news_of_an_order(const Errand& errand, const UnitState& state) const {
+  const auto before = before_.find(errand.component);
+  const bool ran = before != before_.end() && before->second != Activity::kInactive &&
+                   before->second != Activity::kFailed;
+  return errand.kind != Errand::Kind::kEnd && !errand.was_asked && ran && state.is_over() &&
+         state.is_orderly && !state.has_job && !ended_here_.contains(errand.component);
+}
+
 // A lost connection is reported at once, and the return once the nodes had time to be discovered
 // again.
 void Units::note_reach(const std::optional<std::string>& trouble) {
@@ -292,6 +301,11 @@ bool Units::advance(Errand& errand) {
     const std::string why = not_loaded(name, *state, owner).message;
     if (barred_.insert(errand.component).second) inbox_.put(StartBarred{errand.component, why});
     return answer(errand, Outcome::kRefused, why);
+  }
+  if (is_news_of_an_order(errand, *state)) {
+    look_at(errand.component, *state);
+    return answer(errand, Outcome::kRefused,
+                  in_words(*state, name) + ": " + owner.name() + " was told to end it");
   }
   if (!errand.was_asked) note_main_process(errand.component, *state);
   const bool is_start = errand.kind == Errand::Kind::kStart;

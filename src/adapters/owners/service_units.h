@@ -132,6 +132,7 @@ class Units {
   void run();
   void look_at_all();
   void look_at(ComponentId component, const UnitState& state);
+  bool is_news_of_an_order(const Errand& errand, const UnitState& state) const;
   void note_reach(const std::optional<std::string>& trouble);
   void note_main_process(ComponentId component, const UnitState& state);
   void note(const Found& found);

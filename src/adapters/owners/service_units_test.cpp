@@ -254,6 +254,31 @@ TEST_F(UnitsOnAStandInForSystemd, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
   }
 }
 
+// A node in Python answers systemctl stop with exit code 1, others crash on it, or are killed after their time. By itself a
+// process ends before its unit ceases to be active; and a unit may fail before it is active at all.
+TEST_F(UnitsOnAStandInForSystemd, ThatFailWhenTheyAreToldToStopAreToldAsAnOrder) {
+  struct Case {
+    std::string result;
+    std::uint64_t began, left_active, ended;
+    bool is_order;
+  };
+  for (const Case& each :
+       {Case{"exit-code", 100, 200, 300, true}, Case{"signal", 100, 200, 300, true},
+        Case{"core-dump", 100, 200, 300, true}, Case{"timeout", 100, 200, 300, true},
+        Case{"watchdog", 100, 200, 300, false}, Case{"oom-kill", 100, 200, 300, false},
+        Case{"exit-code", 100, 300, 300, false}, Case{"exit-code", 250, 200, 300, false}}) {
+    systemd.add("lidar.service", {.active = "failed",
+                                  .result = each.result,
+                                  .began = each.began,
+                                  .left_active = each.left_active,
+                                  .ended = each.ended});
+    ask();
+    const auto seen = wait_for<ProcessSeen>([](const auto&) { return true; });
+    ASSERT_TRUE(seen) << each.result;
+    EXPECT_EQ(seen->cause, each.is_order ? Cause::kOrder : Cause::kUnknown) << each.result;
+  }
+}
+
 // As systemctl restart leaves it between its two halves.
 TEST_F(UnitsOnAStandInForSystemd, ThatSystemdIsAboutToStartAreNotToldToHaveEnded) {
   running();

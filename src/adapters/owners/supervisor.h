@@ -247,6 +247,7 @@ class Supervisor {
   void end_member(Member& member) CULPRIT_REQUIRES(mutex_);
   void end_what_is_left(ComponentId component, const std::string& variable) const;
   Cause cause_of_stop(const Member& member) const CULPRIT_REQUIRES(mutex_);
+  Cause cause_of_end(const Member& member, const ProcessEnd& end) const CULPRIT_REQUIRES(mutex_);
   static bool is_settled(Member& member, ProcessState state, Time now);
   Time next_deadline() const CULPRIT_REQUIRES(mutex_);
   void wake();

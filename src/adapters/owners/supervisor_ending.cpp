@@ -243,17 +243,25 @@ void Supervisor::end_member(Member& member) {
     for (const FileDescriptor& each : member.tree) send_signal(each, SIGKILL);
     if (!member.variable.empty()) end_what_is_left(member.component, member.variable);
   }
-  const bool is_of_person = end.cause == Cause::kWish &&
-                            launchers_.ran_in_foreground(member.component, member.process.pid());
   ports_.keep(member.process.pid());  // before anybody can order a successor
   inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), end.remark,
-                         is_ours        ? Cause::kWish
-                         : is_of_person ? Cause::kOrder
-                                        : end.cause});
+                         is_ours ? Cause::kWish : cause_of_end(member, end)});
   ended_[member.component] = {member.process.pid(), member.number};
   tell_what_stays(member);
   if (member.process.relation() == Relation::kAdopted)
     launchers_.note_end(member.component, member.process.pid());
+}
+
+// A unit's or a container's owner knows better whether it was told to end it.
+Cause Supervisor::cause_of_end(const Member& member, const ProcessEnd& end) const {
+  const auto found = identities_.find(member.component);
+  const bool is_in_doubt = end.remark == exited(kExceptionInPython).remark &&
+                           found != identities_.end() && runs_python(found->second) &&
+                           !rules_[member.component].has_owner();
+  const bool may_be_wanted = end.cause == Cause::kWish || is_in_doubt;
+  if (may_be_wanted && launchers_.ran_in_foreground(member.component, member.process.pid()))
+    return Cause::kOrder;
+  return is_in_doubt ? Cause::kDoubt : end.cause;
 }
 
 // It is waited for, but not for long: the successor needs what it holds.

@@ -395,10 +395,11 @@ TEST(Supervisor, RobotsThatShareAFolderNoteTheirLaunchersApart) {
   }
 }
 
-// A terminal with a shell that runs `sleep 1000` as a job, in the foreground or not.
+// A terminal with a shell that runs a program as a job, in the foreground or not.
 class Terminal {
  public:
-  explicit Terminal(bool in_foreground) {
+  explicit Terminal(bool in_foreground,
+                    const std::vector<std::string>& command = {"sleep", "1000"}) {
     shell_ = forkpty(&keyboard_, nullptr, nullptr, nullptr);
     if (shell_ != 0) return;
     const pid_t job = fork();
@@ -408,7 +409,10 @@ class Terminal {
       signal(SIGTSTP, SIG_DFL);
       signal(SIGTTOU, SIG_IGN);
       if (in_foreground) tcsetpgrp(STDIN_FILENO, getpid());
-      execlp("sleep", "sleep", "1000", nullptr);
+      std::vector<char*> arguments;
+      for (const std::string& each : command) arguments.push_back(const_cast<char*>(each.c_str()));
+      arguments.push_back(nullptr);
+      execvp(arguments.front(), arguments.data());
     }
     while (true) pause();  // it reaps nothing: how the job ended can be read
   }
@@ -420,9 +424,10 @@ class Terminal {
     close(keyboard_);
   }
   bool is_open() const { return shell_ > 0; }
-  int job() {
+  // Once it runs that program.
+  int job(const std::string& program = "sleep") {
     job_ = a_child_of(shell_);
-    EXPECT_TRUE(becomes(job_, "sleep"));
+    EXPECT_TRUE(becomes(job_, program));
     return job_;
   }
   void press_ctrl_c() const { EXPECT_EQ(write(keyboard_, "\x03", 1), 1); }
@@ -457,6 +462,35 @@ TEST(Supervisor, AJobThatCrashesOrRunsInTheBackgroundWasNotEndedByCtrlC) {
     kill(job, in_foreground ? SIGSEGV : SIGINT);
     const ProcessSeen ended = c.state(ProcessState::kGone);
     EXPECT_EQ(ended.cause, in_foreground ? Cause::kFault : Cause::kWish) << ended.remark;
+  }
+}
+
+// A node that shuts its context down a second time: an exception may end it, too, so in a launch that is in doubt.
+TEST(Supervisor, APythonNodeMayAnswerCtrlCWithAnException) {
+  const test::TestFolder folder;
+  const std::string ready = (folder / "ready").native();
+  std::ofstream(folder / "node.py") << "import sys, time\n"
+                                       "try:\n"
+                                       "  open(sys.argv[1], 'w').close()\n"
+                                       "  time.sleep(1000)\n"
+                                       "except KeyboardInterrupt:\n"
+                                       "  raise RuntimeError('shut down already')\n";
+  const std::vector<std::string> node{"python3", (folder / "node.py").native(), ready};
+  for (const bool in_foreground : {true, false}) {
+    std::filesystem::remove(ready);
+    Terminal terminal(in_foreground, node);
+    if (!terminal.is_open()) GTEST_SKIP() << "this system has no terminals";
+    const int job = terminal.job("");
+    for (int tries = 0; tries < 1000 && !std::filesystem::exists(ready); ++tries)
+      std::this_thread::sleep_for(10ms);
+    ASSERT_TRUE(std::filesystem::exists(ready));
+    Supervised c("sleep 1000");
+    c.supervisor->adopt(ComponentId(0), job, live_now());
+    EXPECT_FALSE(c.launcher().has_ended);
+    kill(job, SIGINT);
+    const ProcessSeen ended = c.state(ProcessState::kGone);
+    EXPECT_EQ(ended.remark, "exit code 1");
+    EXPECT_EQ(ended.cause, in_foreground ? Cause::kOrder : Cause::kDoubt);
   }
 }
 

@@ -68,6 +68,12 @@ std::optional<UnitState::Activity> activity_of(const std::string& text) {
   return std::nullopt;
 }
 
+// systemd stops a unit by itself, too: for its watchdog, or where memory ran out.
+bool may_answer_a_stop(const std::string& result) {
+  return result == "exit-code" || result == "signal" || result == "core-dump" ||
+         result == "timeout";
+}
+
 constexpr const char* kMayNot = "culprit may not: ";
 
 }  // namespace
@@ -211,6 +217,28 @@ Expected<int> SystemdBus::process(const std::string& path, const char* name) {
   return static_cast<int>(pid);
 }
 
+Expected<std::uint64_t> SystemdBus::moment(const std::string& path, const char* interface,
+                                           const char* name) {
+  if (auto connected = connect(); !connected) return Error{connected.error()};
+  BusError error;
+  std::uint64_t at = 0;
+  const int got = sd_bus_get_property_trivial(bus_.get(), kService, path.c_str(), interface, name,
+                                              &error.it, 't', &at);
+  if (got < 0) return failed(name, got, error);
+  return at;
+}
+
+// A unit that is told to stop is not active any more when its main process ends. By itself, that ends first.
+Expected<bool> SystemdBus::was_told_to_stop(const std::string& path) {
+  const auto began = moment(path, kServiceUnit, "ExecMainStartTimestampMonotonic");
+  if (!began) return Error{began.error()};
+  const auto left = moment(path, kUnit, "ActiveExitTimestampMonotonic");
+  if (!left) return Error{left.error()};
+  const auto ended = moment(path, kServiceUnit, "ExecMainExitTimestampMonotonic");
+  if (!ended) return Error{ended.error()};
+  return *began <= *left && *left < *ended;
+}
+
 Expected<bool> SystemdBus::has_job(const std::string& path) {
   if (auto connected = connect(); !connected) return Error{connected.error()};
   BusError error;
@@ -251,6 +279,11 @@ Expected<UnitState> SystemdBus::state_of(const std::string& unit) {
   if (!result) return Error{result.error()};
   state.result = std::move(*result);
   state.is_orderly = state.activity == UnitState::Activity::kInactive && state.result == "success";
+  if (state.activity == UnitState::Activity::kFailed && may_answer_a_stop(state.result)) {
+    const auto told = was_told_to_stop(*path);
+    if (!told) return Error{told.error()};
+    state.is_orderly = *told;
+  }
   return state;
 }
 

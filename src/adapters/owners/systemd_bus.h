@@ -78,7 +78,10 @@ class SystemdBus : public ServiceOwner {
   Expected<std::string> path_of(const std::string& unit);
   Expected<std::string> text(const std::string& path, const char* interface, const char* name);
   Expected<int> process(const std::string& path, const char* name);
+  // When it happened last, in microseconds of the monotonic clock; 0: never.
+  Expected<std::uint64_t> moment(const std::string& path, const char* interface, const char* name);
   Expected<bool> has_job(const std::string& path);
+  Expected<bool> was_told_to_stop(const std::string& path);
 
   std::string remedy() const;
 

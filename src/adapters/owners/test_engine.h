@@ -21,10 +21,12 @@ struct TestContainer {
   std::string status = "created";
   int pid = 0;
   int code = 0;
-  std::vector<std::string>
-      events{};  // "start", and "stop" as of `docker stop`, not of `docker kill`
+  std::string events{};  // of the last moments, one a line
   std::vector<std::string> command{"sleep", "300"};
 };
+
+// As dockerd writes it; `signal` is of "kill".
+std::string event_of(const std::string& action, const std::string& signal = "");
 
 class TestEngine {
  public:
@@ -51,7 +53,6 @@ class TestEngine {
   std::string answer_to(const std::string& method, const std::string& target)
       CULPRIT_REQUIRES(mutex_);
   std::string look_at(const std::string& name) CULPRIT_REQUIRES(mutex_);
-  std::string events(const std::string& target) CULPRIT_REQUIRES(mutex_);
   void run(TestContainer& container);
   void end(TestContainer& container);
   void notice(TestContainer& container);

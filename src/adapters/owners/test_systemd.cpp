@@ -157,6 +157,12 @@ struct TestSystemdMethods {
     if (what == "Result") return sd_bus_message_append(reply, "s", unit.result.c_str());
     if (what == "ExecMainPID")
       return sd_bus_message_append(reply, "u", static_cast<std::uint32_t>(unit.last_pid));
+    if (what == "ExecMainStartTimestampMonotonic")
+      return sd_bus_message_append(reply, "t", unit.began);
+    if (what == "ActiveExitTimestampMonotonic")
+      return sd_bus_message_append(reply, "t", unit.left_active);
+    if (what == "ExecMainExitTimestampMonotonic")
+      return sd_bus_message_append(reply, "t", unit.ended);
     const bool lies = !self.said_active_.empty();
     if (what == "MainPID")
       return sd_bus_message_append(reply, "u",
@@ -187,13 +193,20 @@ const sd_bus_vtable kManager[] = {
     SD_BUS_METHOD("ListUnitFiles", "", "a(ss)", Methods::files, SD_BUS_VTABLE_UNPRIVILEGED),
     SD_BUS_VTABLE_END};
 const sd_bus_vtable kUnit[] = {
-    SD_BUS_VTABLE_START(0), SD_BUS_PROPERTY("LoadState", "s", Methods::property, 0, 0),
+    SD_BUS_VTABLE_START(0),
+    SD_BUS_PROPERTY("LoadState", "s", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ActiveState", "s", Methods::property, 0, 0),
-    SD_BUS_PROPERTY("Job", "(uo)", Methods::property, 0, 0), SD_BUS_VTABLE_END};
+    SD_BUS_PROPERTY("ActiveExitTimestampMonotonic", "t", Methods::property, 0, 0),
+    SD_BUS_PROPERTY("Job", "(uo)", Methods::property, 0, 0),
+    SD_BUS_VTABLE_END};
 const sd_bus_vtable kService[] = {
-    SD_BUS_VTABLE_START(0), SD_BUS_PROPERTY("MainPID", "u", Methods::property, 0, 0),
+    SD_BUS_VTABLE_START(0),
+    SD_BUS_PROPERTY("MainPID", "u", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ExecMainPID", "u", Methods::property, 0, 0),
-    SD_BUS_PROPERTY("Result", "s", Methods::property, 0, 0), SD_BUS_VTABLE_END};
+    SD_BUS_PROPERTY("ExecMainStartTimestampMonotonic", "t", Methods::property, 0, 0),
+    SD_BUS_PROPERTY("ExecMainExitTimestampMonotonic", "t", Methods::property, 0, 0),
+    SD_BUS_PROPERTY("Result", "s", Methods::property, 0, 0),
+    SD_BUS_VTABLE_END};
 
 }  // namespace
 

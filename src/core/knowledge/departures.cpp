@@ -105,9 +105,15 @@ void Departures::left(ComponentId component, Time at) {
   if (launch->left == 0 || later(launch->left_at, kTogether) < at) {
     launch->left = 0;
     launch->left_first = at;
+    launch->failed.reset();
   }
   ++launch->left;
   launch->left_at = at;
+}
+
+void Departures::failed(ComponentId component, Time at) {
+  left(component, at);
+  if (Launch* launch = launch_of(component)) launch->failed = component;
 }
 
 void Departures::fell(ComponentId component, Time at) {
@@ -241,10 +247,13 @@ Departures::Verdict Departures::verdict(const Launch& launch, Time now) const {
   if (had_nothing_left && is_soon_after(std::max(launch.fell_at, launch.ended_here_at), kTogether))
     return {Verdict::What::kGoesOn};
   if (is_soon_after(launch.ended_here_at)) return {Verdict::What::kBroken};
-  if (!is_soon_after(launch.fell_at))
+  const bool has_failed = are_leaving && launch.left == 1 && launch.failed;
+  if (!is_soon_after(launch.fell_at) && !has_failed)
     return {Verdict::What::kEnded, kNever, StaysDown::Why::kPerson};
   if (revives_) return {Verdict::What::kBroken};
-  return {Verdict::What::kEnded, kNever, StaysDown::Why::kDoubt, began - launch.fell_at};
+  const Duration after = has_failed ? launch.ended - began : began - launch.fell_at;
+  return {Verdict::What::kEnded, kNever, StaysDown::Why::kDoubt,
+          has_failed ? launch.failed : launch.fell, after};
 }
 
 bool Departures::has_outlived(const Launch& launch, Time at) {
@@ -312,7 +321,7 @@ Departures::Settled Departures::settle(Time now) {
     if (launch != nullptr && launch->verdict.what == Verdict::What::kEnded) {
       down.launcher = launch->launcher;
       if (down.why == StaysDown::Why::kDoubt) {
-        down.fell = launch->fell;
+        down.fell = launch->verdict.fell;
         down.after = launch->verdict.after;
       }
     }

@@ -14,8 +14,9 @@
 //   continued its stopped process
 //
 // A launch that lived on for kDoubt after a crash was ended by a person. One that ends sooner may have
-// ended because of the crash (on_exit=Shutdown() in a launch file): that is in doubt. These are not the
-// end of a launch:
+// ended because of the crash (on_exit=Shutdown() in a launch file): that is in doubt. So is the end of a
+// launch after the only process that left failed with an error that Ctrl-C may have led to. These are
+// not the end of a launch:
 //
 //   the launcher crashed, or only its own process ended      its nodes run on
 //   all that it ran had crashed                              it had nothing left to do
@@ -56,6 +57,8 @@ class Departures {
   void launcher_ended(const LauncherSeen& seen, Time at);
   // It left: of its own or of a person's will, as it seems. Again, for what left already: nothing.
   void left(ComponentId component, Time at);
+  // It left with an error, which its program also makes of a person's wish (Cause::kDoubt).
+  void failed(ComponentId component, Time at);
   // It crashed.
   void fell(ComponentId component, Time at);
   // culprit ended it.
@@ -135,14 +138,16 @@ class Departures {
     } what = What::kOpen;
     Time until = kNever;
     StaysDown::Why why = StaysDown::Why::kPerson;
-    Duration after{};  // kDoubt
+    std::optional<ComponentId> fell{};  // kDoubt
+    Duration after{};                   // likewise
   };
   struct Launch {
     int launcher = 0;
-    int left = 0;              // how many, since none had left for kTogether
-    Time left_first = kNever;  // of them
-    Time left_at = kLongAgo;   // the last one of them
-    Time fell_at = kLongAgo;   // the last crash before they began to leave
+    int left = 0;                         // how many, since none had left for kTogether
+    Time left_first = kNever;             // of them
+    Time left_at = kLongAgo;              // the last one of them
+    std::optional<ComponentId> failed{};  // one of them, with an error
+    Time fell_at = kLongAgo;              // the last crash before they began to leave
     std::optional<ComponentId> fell{};
     Time fell_before = kLongAgo;    // the crash before that one
     Time ended_here_at = kLongAgo;  // culprit ended one

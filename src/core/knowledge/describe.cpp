@@ -221,6 +221,8 @@ class Describer {
                remedy;
       case StaysDown::Why::kOwner:
         return down + "its owner ended it in an orderly way, as on a person's order" + remedy;
+      case StaysDown::Why::kTerminal:
+        return down + "it ended in the foreground of a terminal, as after Ctrl-C" + remedy;
       case StaysDown::Why::kShutDown:
         return down + "its node was shut down" + remedy;
       case StaysDown::Why::kStopped:
@@ -450,6 +452,8 @@ std::string describe(const Departures::Departure& departure, const std::string& 
              " ended while culprit did not watch; a person may have ended it";
     case StaysDown::Why::kOwner:
       return "the owner of " + component + " ended it in an orderly way, as on a person's order";
+    case StaysDown::Why::kTerminal:
+      return component + " ended in the foreground of a terminal, as after Ctrl-C";
     case StaysDown::Why::kShutDown:
       return "the node of " + component + " was shut down";
     case StaysDown::Why::kStopped:

@@ -12,6 +12,8 @@ std::string_view to_string(StaysDown::Why why) {
       return "unseen";
     case StaysDown::Why::kOwner:
       return "owner";
+    case StaysDown::Why::kTerminal:
+      return "terminal";
     case StaysDown::Why::kShutDown:
       return "shut_down";
     case StaysDown::Why::kStopped:
@@ -27,7 +29,7 @@ std::string_view to_string(StaysDown::Why why) {
 std::optional<StaysDown::Why> reason_named(std::string_view name) {
   using enum StaysDown::Why;
   for (const StaysDown::Why each :
-       {kPerson, kDoubt, kUnseen, kOwner, kShutDown, kStopped, kUnloaded, kOrder}) {
+       {kPerson, kDoubt, kUnseen, kOwner, kTerminal, kShutDown, kStopped, kUnloaded, kOrder}) {
     if (to_string(each) == name) return each;
   }
   return std::nullopt;

@@ -17,6 +17,7 @@ struct StaysDown {
     kDoubt,     // its launch ended so soon after a crash that it may have ended because of that
     kUnseen,    // it ended with all others while culprit did not run
     kOwner,     // its owner was told to end it (systemctl stop, docker stop)
+    kTerminal,  // it ended in the foreground of a terminal (Ctrl-C)
     kShutDown,  // its node was shut down (ros2 lifecycle set … shutdown)
     kStopped,   // a person stopped its process in its terminal (Ctrl-Z)
     kUnloaded,  // a person unloaded it from its container (ros2 component unload)
@@ -29,7 +30,7 @@ struct StaysDown {
   Duration after{};                   // kDoubt: so long before the launch began to end
 };
 
-// "person", "doubt", "unseen", "owner", "shut_down", "stopped", "unloaded", "order"
+// "person", "doubt", "unseen", "owner", "terminal", "shut_down", "stopped", "unloaded", "order"
 std::string_view to_string(StaysDown::Why why);
 std::optional<StaysDown::Why> reason_named(std::string_view name);
 

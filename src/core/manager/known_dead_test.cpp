@@ -412,7 +412,7 @@ TEST(AnOwner, ThatEndsAProcessBeforeCulpritDoesIsNotToldToStartItAgain) {
   end(robot, "camera", "killed by signal 2", Cause::kOrder);
   robot.run_for(1min);
   EXPECT_FALSE(robot.was_asked("camera: start process")) << transcript(robot);
-  EXPECT_EQ(robot.count("camera stays down: its owner ended it in an orderly way"), 1u)
+  EXPECT_EQ(robot.count("camera stays down: it ended in the foreground of a terminal"), 1u)
       << transcript(robot);
 }
 

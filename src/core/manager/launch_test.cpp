@@ -322,6 +322,57 @@ TEST(ALaunch, OfOthersThatEndsSoonAfterACrashStaysDown) {
   EXPECT_EQ(robot.count("a stays down: the launch of process 50"), 1u) << transcript(robot);
 }
 
+// A node in Python that fails with exit code 1, as it also may on Ctrl-C; with a good-bye or without one.
+void fail_as_python(TestRobot& robot, const std::string& name, bool says_good_bye) {
+  robot[name].end();
+  if (says_good_bye) robot.tell(NodeVanished{"/" + name});
+  robot.tell(ProcessSeen{robot.id(name), ProcessState::kGone, robot[name].pid, "exit code 1",
+                         Cause::kDoubt});
+}
+
+TEST(ALaunch, OfNodesInPythonThatSomebodyEndsIsNotStartedAgain) {
+  for (const bool says_good_bye : {true, false}) {
+    TestRobot robot = launch_of_five(reviving());
+    for (const std::string& name : kFive) fail_as_python(robot, name, says_good_bye);
+    robot.run_for(300ms);
+    end_launcher(robot);
+    robot.run_for(1min);
+    EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+    EXPECT_EQ(robot.count("a, b, c, d and e stay down: a person ended the launch of process 50"),
+              1u)
+        << transcript(robot);
+  }
+}
+
+// An exception, or Ctrl-C: nothing tells them apart.
+TEST(ALaunch, OfOneNodeInPythonThatFailsStaysDownInDoubtUnlessRevived) {
+  for (const bool says_good_bye : {true, false}) {
+    for (const bool revives : {false, true}) {
+      TestRobot robot = launch_of_five(revives ? reviving() : Manager::Options());
+      for (const std::string name : {"b", "c", "d", "e"})
+        robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
+      fail_as_python(robot, "a", says_good_bye);
+      robot.run_for(200ms);
+      robot.tell(LauncherSeen{robot.id("a"), kLauncher, true});
+      robot.run_for(1min);
+      EXPECT_EQ(robot.works("a"), revives) << transcript(robot);
+      EXPECT_EQ(robot.count("a stays down: the launch of process 50 ended 200 ms after a crashed"),
+                revives ? 0u : 1u)
+          << transcript(robot);
+    }
+  }
+}
+
+// Its launch goes on: it was an exception, or a person ended it alone.
+TEST(ALaunch, OfWhichANodeInPythonFailsIsCompletedAgain) {
+  for (const bool says_good_bye : {true, false}) {
+    TestRobot robot = launch_of_five();
+    fail_as_python(robot, "b", says_good_bye);
+    robot.run_for(5s);
+    EXPECT_TRUE(robot.works("b")) << transcript(robot);
+  }
+}
+
 // A process that culprit started in place of a member of a launch ends with the launch, whenever
 // that is.
 TEST(ALaunch, TakesWhatStandsInForOneOfItAlong) {

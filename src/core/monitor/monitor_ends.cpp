@@ -105,9 +105,13 @@ void Monitor::note_end(const ProcessSeen& seen, Time at) {
   note_no_longer_dead(component);
   if (seen.cause == Cause::kOrder) {  // also if culprit was about to end it
     write_.departures.left(component, at);
-    write_.departures.ended_by_order(component, StaysDown::Why::kOwner);
+    const bool has_owner = knowledge_.rules[component].has_owner();
+    write_.departures.ended_by_order(
+        component, has_owner ? StaysDown::Why::kOwner : StaysDown::Why::kTerminal);
   } else if (is_ended_here(component, knowledge_)) {
     write_.departures.ended_here(component, at);
+  } else if (seen.cause == Cause::kDoubt) {
+    write_.departures.failed(component, at);
   } else if (has_said_good_bye) {
     write_.departures.lost(component);
   } else if (seen.cause == Cause::kWish) {
@@ -117,8 +121,8 @@ void Monitor::note_end(const ProcessSeen& seen, Time at) {
   } else {
     write_.departures.lost(component);
   }
-  if (!has_said_good_bye && seen.cause == Cause::kFault)
-    deadlines_.set(farewell_of(component), later(at, kFarewell));
+  const bool is_broken = seen.cause == Cause::kFault || seen.cause == Cause::kDoubt;
+  if (!has_said_good_bye && is_broken) deadlines_.set(farewell_of(component), later(at, kFarewell));
 }
 
 // Handles a node that leaves the graph while its process runs, or the moment after it ended.

@@ -112,8 +112,9 @@ enum class Cause : std::uint8_t {
            // alone
   kWish,   // exit code 0, SIGINT, SIGTERM or SIGHUP; culprit ended it; it was stopped with its
            // launcher, or with all of its job in a terminal
-  kOrder   // its owner ended it in an orderly way, as systemctl stop and docker stop do, and
+  kOrder,  // its owner ended it in an orderly way, as systemctl stop and docker stop do, and
            // Ctrl-C in the terminal of its shell
+  kDoubt   // exit code 1 of a program in Python: an exception, or what a node makes of SIGINT
 };
 
 // The state of a component's process, as the operating system reports it.
