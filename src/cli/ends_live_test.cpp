@@ -11,6 +11,7 @@
 #include "base/environment.h"
 #include "base/live_clock.h"
 #include "owners/proc.h"
+#include "owners/test_control_group.h"
 #include "ros2/options.h"
 #include "terminal/test_program.h"
 
@@ -65,6 +66,26 @@ TEST_F(Ends, AKilledNodeIsReplacedBeforeItsSilenceIsHeard) {
   }
   EXPECT_THAT(culprit.output(), HasSubstr("lidar is known to be down, killed by signal 9"));
   kill(killed, SIGKILL);
+}
+
+// As `systemctl freeze` and `docker pause`: its process looks as if it slept, and does nothing.
+TEST_F(Ends, AFrozenNodeIsLeftAloneUntilItIsThawed) {
+  const owners::TestControlGroup group;
+  if (!group.is_there()) GTEST_SKIP() << "this machine lets nobody make a control group";
+  const TestProgram lidar(world, {"ros2_peer_node", domain, "/lidar"});
+  group.take(lidar.pid());
+  const auto culprit = run(rule("lidar", "alive(lidar) == false"));
+  ASSERT_TRUE(culprit.prints("lidar is there (process " + std::to_string(lidar.pid()) + ")"))
+      << culprit.output();
+  ASSERT_TRUE(culprit.prints("watching")) << culprit.output();
+  std::this_thread::sleep_for(1s);
+  group.freeze();
+  EXPECT_TRUE(culprit.prints("lidar stays down: a person froze it")) << culprit.output();
+  std::this_thread::sleep_for(8s);  // one that hangs would have been replaced
+  group.freeze(false);
+  EXPECT_TRUE(culprit.prints("lidar_silent cleared")) << culprit.output();
+  EXPECT_EQ(pid_in(culprit.output(), "lidar"), lidar.pid()) << culprit.output();
+  kill(lidar.pid(), SIGKILL);
 }
 
 // As Ctrl-C on a launch file: all are asked to end at once, and end one after the other.

@@ -281,6 +281,7 @@ bool Supervisor::is_gone(ComponentId component) const {
 
 // Ctrl-Z stops the processes that were started together, and their launcher unless that is a shell.
 Cause Supervisor::cause_of_stop(const Member& member) const {
+  if (member.process.is_frozen()) return Cause::kOrder;
   const bool is_of_person = launchers_.is_stopped_with(member.component, member.process.pid());
   return is_of_person ? Cause::kWish : Cause::kFault;
 }

@@ -29,6 +29,7 @@
 #include "owners/proc.h"
 #include "owners/spawn.h"
 #include "owners/started_processes.h"
+#include "owners/test_control_group.h"
 #include "owners/test_process.h"
 #include "owners/watched_process.h"
 
@@ -505,6 +506,25 @@ TEST(Supervisor, CtrlZInTheTerminalOfANodeIsAPersonsWish) {
   EXPECT_EQ(c.state(ProcessState::kStopped).cause, Cause::kWish);
   kill(job, SIGCONT);
   EXPECT_EQ(c.state(ProcessState::kRunning).pid, job);
+}
+
+// As systemctl freeze and docker pause do.
+TEST(Supervisor, AProcessThatIsFrozenWithItsControlGroupWasStoppedOnAPersonsOrder) {
+  const TestControlGroup group;
+  if (!group.is_there()) GTEST_SKIP() << "this machine lets nobody make a control group";
+  Supervised c("sleep 1000");
+  const auto pid = spawn({{"sleep", "1000"}, {}, "/dev/null"});
+  ASSERT_TRUE(pid);
+  group.take(*pid);
+  c.supervisor->adopt(ComponentId(0), *pid, live_now());
+  EXPECT_EQ(c.state(ProcessState::kRunning).pid, *pid);
+  group.freeze();
+  EXPECT_EQ(c.state(ProcessState::kStopped).cause, Cause::kOrder);
+  group.freeze(false);
+  EXPECT_EQ(c.state(ProcessState::kRunning).pid, *pid);
+  group.freeze();
+  EXPECT_EQ(c.state(ProcessState::kStopped).cause, Cause::kOrder);
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone) << "as a person may order";
 }
 
 // A process that culprit starts while the launcher runs stands in for the launch, and its mark says

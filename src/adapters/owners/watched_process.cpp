@@ -25,6 +25,7 @@ Expected<WatchedProcess> WatchedProcess::watch(int pid, Relation relation) {
 WatchedProcess::WatchedProcess(int pid, FileDescriptor pidfd, Relation relation)
     : pid_(pid),
       pidfd_(std::move(pidfd)),
+      freezer_(pid),
       relation_(relation),
       mark_(relation == Relation::kMarked ? variable_of(pid) : "") {}
 
@@ -34,7 +35,8 @@ ProcessState WatchedProcess::state() const {
   // 'Z' is a main thread that has ended before the others: the process goes on.
   const char letter = state_letter(pid_).value_or('X');
   const bool stands = letter == 'T' || letter == 't';
-  return stands && !is_traced(pid_) ? ProcessState::kStopped : ProcessState::kRunning;
+  if (stands && !is_traced(pid_)) return ProcessState::kStopped;
+  return is_frozen() ? ProcessState::kStopped : ProcessState::kRunning;
 }
 
 void WatchedProcess::signal(int number) const {

@@ -6,6 +6,7 @@
 
 #include "base/expected.h"
 #include "owners/file_descriptor.h"
+#include "owners/freezer.h"
 #include "owners/process_end.h"
 #include "robot/observation.h"
 
@@ -26,8 +27,9 @@ class WatchedProcess {
   // Readable when the process has ended.
   int descriptor() const { return pidfd_.get(); }
 
-  // Running or stopped; kGone if it has ended.
+  // Running, or stopped by a signal or frozen; kGone if it has ended.
   ProcessState state() const;
+  bool is_frozen() const { return freezer_.is_frozen(); }
 
   // To the process, and to the whole process group that it got from us. The group of somebody
   // else's process is somebody else's.
@@ -48,6 +50,7 @@ class WatchedProcess {
 
   int pid_;
   FileDescriptor pidfd_;
+  Freezer freezer_;
   Relation relation_;
   bool is_reaped_ = false;
   std::string mark_;  // of kMarked: what its group has in its environment

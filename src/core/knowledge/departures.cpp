@@ -163,7 +163,7 @@ void Departures::is_up(ComponentId component) {
 
 void Departures::goes_on(ComponentId component, Time at) {
   Member& member = members_[component.index];
-  if (member.down != StaysDown::Why::kStopped) return;
+  if (member.down != StaysDown::Why::kStopped && member.down != StaysDown::Why::kFrozen) return;
   member.down.reset();
   member.back = at;
 }

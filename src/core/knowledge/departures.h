@@ -65,12 +65,12 @@ class Departures {
   void ended_here(ComponentId component, Time at);
   // It is gone for an unknown reason.
   void lost(ComponentId component);
-  // A person had its owner end it (systemctl stop, docker stop), shut its node down, stopped its process, or unloaded
-  // it from its container.
+  // A person had its owner end it (systemctl stop, docker stop), shut its node down, stopped or froze its process,
+  // or unloaded it from its container.
   void ended_by_order(ComponentId component, StaysDown::Why why);
   // Its node is not shut down any more.
   void is_up(ComponentId component);
-  // Its process runs: if a person had stopped it, it goes on.
+  // Its process runs: if a person had stopped or frozen it, it goes on.
   void goes_on(ComponentId component, Time at);
   // Its node is there again: if a person had unloaded it, somebody loaded it again.
   void loaded(ComponentId component, Time at);

@@ -229,6 +229,10 @@ class Describer {
         return down + "a person stopped " + (is_one ? "it" : "them") +
                " in a terminal (Ctrl-Z); continue there (fg), or let culprit replace " +
                (is_one ? "it" : "them") + ": culprit revive";
+      case StaysDown::Why::kFrozen:
+        return down + "a person froze " + (is_one ? "it" : "them") +
+               "; continue by systemctl thaw or docker unpause, or let culprit replace " +
+               (is_one ? "it" : "them") + ": culprit revive";
       case StaysDown::Why::kUnloaded:
         return down + (is_one ? "it was" : "they were") +
                " unloaded, and not by culprit, and the container goes on; load " +
@@ -458,6 +462,8 @@ std::string describe(const Departures::Departure& departure, const std::string& 
       return "the node of " + component + " was shut down";
     case StaysDown::Why::kStopped:
       return "a person stopped " + component + " in a terminal (Ctrl-Z)";
+    case StaysDown::Why::kFrozen:
+      return "a person froze " + component + " (systemctl freeze, docker pause)";
     case StaysDown::Why::kUnloaded:
       return component + " was unloaded from its container, and not by culprit";
     case StaysDown::Why::kOrder:

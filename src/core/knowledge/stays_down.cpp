@@ -18,6 +18,8 @@ std::string_view to_string(StaysDown::Why why) {
       return "shut_down";
     case StaysDown::Why::kStopped:
       return "stopped";
+    case StaysDown::Why::kFrozen:
+      return "frozen";
     case StaysDown::Why::kUnloaded:
       return "unloaded";
     case StaysDown::Why::kOrder:
@@ -28,8 +30,8 @@ std::string_view to_string(StaysDown::Why why) {
 
 std::optional<StaysDown::Why> reason_named(std::string_view name) {
   using enum StaysDown::Why;
-  for (const StaysDown::Why each :
-       {kPerson, kDoubt, kUnseen, kOwner, kTerminal, kShutDown, kStopped, kUnloaded, kOrder}) {
+  for (const StaysDown::Why each : {kPerson, kDoubt, kUnseen, kOwner, kTerminal, kShutDown,
+                                    kStopped, kFrozen, kUnloaded, kOrder}) {
     if (to_string(each) == name) return each;
   }
   return std::nullopt;

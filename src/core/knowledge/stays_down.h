@@ -20,6 +20,7 @@ struct StaysDown {
     kTerminal,  // it ended in the foreground of a terminal (Ctrl-C)
     kShutDown,  // its node was shut down (ros2 lifecycle set … shutdown)
     kStopped,   // a person stopped its process in its terminal (Ctrl-Z)
+    kFrozen,    // a person froze it (systemctl freeze, docker pause)
     kUnloaded,  // a person unloaded it from its container (ros2 component unload)
     kOrder      // a person ordered culprit to end what it had started
   };
@@ -30,7 +31,7 @@ struct StaysDown {
   Duration after{};                   // kDoubt: so long before the launch began to end
 };
 
-// "person", "doubt", "unseen", "owner", "terminal", "shut_down", "stopped", "unloaded", "order"
+// "person", "doubt", "unseen", "owner", "terminal", "shut_down", "stopped", "frozen", "unloaded", "order"
 std::string_view to_string(StaysDown::Why why);
 std::optional<StaysDown::Why> reason_named(std::string_view name);
 

@@ -416,6 +416,24 @@ TEST(AnOwner, ThatEndsAProcessBeforeCulpritDoesIsNotToldToStartItAgain) {
       << transcript(robot);
 }
 
+// systemctl freeze, docker pause.
+TEST(AnOwner, ThatFreezesAProcessIsNotToldToReplaceItUntilItThaws) {
+  TestRobot robot = robot_with(kPatientRules);
+  robot["camera"].process = ProcessState::kStopped;
+  robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kStopped, robot["camera"].pid, "",
+                         Cause::kOrder});
+  robot.run_for(1min);
+  EXPECT_FALSE(robot.was_asked("camera: st")) << transcript(robot);
+  EXPECT_EQ(robot.count("camera stays down: a person froze it"), 1u) << transcript(robot);
+  robot["camera"].process = ProcessState::kRunning;
+  robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kRunning, robot["camera"].pid, ""});
+  robot.run_for(Departures::kBack + 5s);
+  EXPECT_FALSE(robot.was_asked("camera: st")) << transcript(robot);
+  robot.kill("camera");
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
 TEST(AShutdown, OfANodeIsNotUndone) {
   const std::string rules = std::string(kPatientRules) + R"(
 RULE CameraInactive

@@ -340,7 +340,9 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
     forget_process(seen.component, at);
   }
   update_alive(seen.component, at,
-               seen.state == ProcessState::kStopped ? "its process is stopped" : seen.remark);
+               seen.state != ProcessState::kStopped ? seen.remark
+               : seen.cause == Cause::kOrder        ? "its process is frozen"
+                                                    : "its process is stopped");
 }
 
 void Monitor::on(Time at, const Probed& seen) {

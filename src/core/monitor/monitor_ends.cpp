@@ -85,6 +85,8 @@ void Monitor::note_process(const ProcessSeen& seen, Time at) {
     case ProcessState::kStopped:
       if (seen.cause == Cause::kWish)
         write_.departures.ended_by_order(seen.component, StaysDown::Why::kStopped);
+      if (seen.cause == Cause::kOrder)
+        write_.departures.ended_by_order(seen.component, StaysDown::Why::kFrozen);
       if (seen.cause == Cause::kFault && knowledge_.components[seen.component].in_graph)
         note_known_dead(seen.component, at);
       return;

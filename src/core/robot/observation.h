@@ -101,7 +101,7 @@ struct LifecycleRead {
 
 enum class ProcessState : std::uint8_t {
   kRunning,
-  kStopped,  // by SIGSTOP or a debugger: it exists and does nothing
+  kStopped,  // by SIGSTOP or a debugger, or frozen: it exists and does nothing
   kGone      // exited, killed, or never started
 };
 
@@ -113,7 +113,7 @@ enum class Cause : std::uint8_t {
   kWish,   // exit code 0, SIGINT, SIGTERM or SIGHUP; culprit ended it; it was stopped with its
            // launcher, or with all of its job in a terminal
   kOrder,  // its owner ended it in an orderly way, as systemctl stop and docker stop do, and
-           // Ctrl-C in the terminal of its shell
+           // Ctrl-C in the terminal of its shell; its control group was frozen
   kDoubt   // exit code 1 of a program in Python: an exception, or what a node makes of SIGINT
 };
 
