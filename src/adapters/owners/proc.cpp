@@ -176,6 +176,16 @@ std::optional<std::string> hold_of_debugger(int pid) {
          " is not replaced while a debugger holds it: let it go on, or end it there";
 }
 
+std::optional<std::string> core_dump_of(int pid) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (!line.starts_with("CoreDumping:")) continue;
+    if (!line.ends_with('1')) break;
+    return "the core dump of its crashed process " + std::to_string(pid) + " is not complete";
+  }
+  return std::nullopt;
+}
+
 std::optional<int> status_of_zombie(int pid) {
   // For other users' processes it is 0 (proc(5)).
   struct stat owner {};

@@ -18,6 +18,9 @@ std::optional<char> state_letter(int pid);
 // Why it is not replaced: a debugger holds it, and its user would lose it. Nothing: none does.
 std::optional<std::string> hold_of_debugger(int pid);
 
+// Why a process is not ended yet that has crashed: it still writes its core dump, which SIGKILL would cut. Nothing: it does not.
+std::optional<std::string> core_dump_of(int pid);
+
 // The exit status that its parent will receive, as in wait(2). Nothing: it has not ended, its
 // parent has received it, or it is another user's.
 std::optional<int> status_of_zombie(int pid);

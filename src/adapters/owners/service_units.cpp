@@ -184,7 +184,9 @@ void Units::look_at_all() {
 // have been stopped on purpose before culprit started.
 void Units::look_at(ComponentId component, const UnitState& state) {
   if (!state.is_loaded) return;
-  if (barred_.erase(component) > 0) inbox_.put(StartBarred{component, ""});
+  const auto dump = dumps_.find(component);
+  const bool is_dumping = dump != dumps_.end() && awaited_dump(component, dump->second.pid);
+  if (!is_dumping && barred_.erase(component) > 0) inbox_.put(StartBarred{component, ""});
   if (state.is_over() && state.has_job) return;  // systemctl restart is half-way
   note_main_process(component, state);
   const auto before = before_.find(component);
@@ -361,13 +363,26 @@ std::optional<std::string> Units::would_end_too(ComponentId component) {
 }
 
 // An order to end for good is done also if a debugger holds the process.
-std::optional<std::string> Units::hold_of(const Errand& errand, const UnitState& state) const {
+std::optional<std::string> Units::hold_of(const Errand& errand, const UnitState& state) {
   if (errand.kind != Errand::Kind::kReplace || !is_here()) return std::nullopt;
   for (const int pid : {errand.pid, state.main_pid}) {
-    auto hold = pid == 0 ? std::nullopt : hold_of_debugger(pid);
-    if (hold) return hold;
+    if (pid == 0) continue;
+    if (auto hold = hold_of_debugger(pid)) return hold;
+    const auto dump = awaited_dump(errand.component, pid);
+    if (!dump) continue;
+    if (barred_.insert(errand.component).second) inbox_.put(StartBarred{errand.component, *dump});
+    return name_of(errand.component) + " is not ended: " + *dump;
   }
   return std::nullopt;
+}
+
+// As Supervisor's.
+std::optional<std::string> Units::awaited_dump(ComponentId component, int pid) {
+  auto text = is_here() && pid != 0 ? core_dump_of(pid) : std::nullopt;
+  if (!text) return std::nullopt;
+  Dump& dump = dumps_[component];
+  if (dump.pid != pid) dump = {pid, later(live_now(), Supervisor::kDump)};
+  return live_now() < dump.until ? std::move(text) : std::nullopt;
 }
 
 bool Units::begin_end(Errand& errand, const UnitState& state) {
@@ -448,6 +463,7 @@ bool Units::watch_end(Errand& errand, const UnitState& state) {
   if (now >= errand.escalate && !is_left_by_systemd && errand.main_pid != 0 &&
       state.main_pid == errand.main_pid) {
     errand.escalate = later(now, polite_for(errand));
+    if (awaited_dump(errand.component, errand.main_pid)) return false;
     if (const auto killed = owner_of(errand.component).kill(name); !killed)
       inbox_.put(LinkTrouble{killed.error()});
   }

@@ -141,7 +141,8 @@ class Units {
   // Gives whether the errand is done.
   bool advance(Errand& errand);
   bool begin_start(Errand& errand, const UnitState& state);
-  std::optional<std::string> hold_of(const Errand& errand, const UnitState& state) const;
+  std::optional<std::string> hold_of(const Errand& errand, const UnitState& state);
+  std::optional<std::string> awaited_dump(ComponentId component, int pid);
   bool begin_end(Errand& errand, const UnitState& state);
   bool watch_start(Errand& errand, const UnitState& state);
   bool watch_end(Errand& errand, const UnitState& state);
@@ -163,6 +164,12 @@ class Units {
   Engine docker_{EngineContainer::Engine::kDocker, host_};
   Engine podman_{EngineContainer::Engine::kPodman, host_};
   std::map<ComponentId, UnitState::Activity> before_;
+  // A crashed process that writes its core dump, and until when that is waited for.
+  struct Dump {
+    int pid = 0;
+    Time until = kNever;
+  };
+  std::map<ComponentId, Dump> dumps_;
   // The main process that ended on culprit's request; until another one runs.
   std::map<ComponentId, int> ended_here_;
   std::map<ComponentId, Elsewhere> elsewhere_;

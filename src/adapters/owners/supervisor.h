@@ -33,7 +33,9 @@
 // An order to stop applies to the processes that run when it comes, and not to their successors.
 //
 // If a start fails because its program or its parameter file is missing, that is reported with the
-// path (StartBarred). The supervisor then tries the start, all but its last step, every
+// path (StartBarred). A crashed process that writes its core dump is not killed for kDump: a person
+// needs the dump. Until it is complete, the component is not ended to be started again (StartBarred).
+// The supervisor then tries the start, all but its last step, every
 // kMissingPeriod until it would succeed.
 //
 // A process ends with all its descendants, also with one that leads a session of its own, as in a
@@ -96,6 +98,8 @@ class Supervisor {
   static constexpr Duration kMissingPeriod = std::chrono::milliseconds(500);
   // How long the supervisor waits for the children that it kills.
   static constexpr Duration kLeftEnds = std::chrono::milliseconds(200);
+  // How long the core dump of a crashed process is waited for.
+  static constexpr Duration kDump = std::chrono::seconds(60);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);
 
@@ -179,6 +183,8 @@ class Supervisor {
     std::vector<Relative> left{};  // what somebody else's had started when its end was ordered
     Time left_at{};
     std::optional<Time> stands_since{};  // while its stop is not reported yet
+    std::optional<Time> dump_until{};    // it writes its core dump, and that is waited for
+    bool is_dump_awaited = false;
     int launcher = 0;        // that it stands in for, while its program does not run yet
     std::string variable{};  // what it and all that it started have in their environment
     std::vector<FileDescriptor> tree{};  // what it had started when its end was ordered
@@ -241,6 +247,8 @@ class Supervisor {
   bool is_over(const Shutdown& shutdown) const CULPRIT_REQUIRES(mutex_);
   Shutdown* shutdown_of(ComponentId component) CULPRIT_REQUIRES(mutex_);
   static void hurry(Shutdown& shutdown);
+  std::optional<std::string> awaited_dump(Member& member, Time now);
+  void await_dump_no_more(Member& member);
   void begin_shutdown(CommandId command, ComponentId component, Hangs hangs,
                       std::set<std::uint64_t> meant) CULPRIT_REQUIRES(mutex_);
   std::set<std::uint64_t> started_members_of(ComponentId component) const CULPRIT_REQUIRES(mutex_);

@@ -40,6 +40,27 @@ std::optional<std::string> Supervisor::hold_of(const Member& member) {
   return std::nullopt;
 }
 
+// A child of it may be the node. It has crashed, so nothing of it works any more.
+std::optional<std::string> Supervisor::awaited_dump(Member& member, Time now) {
+  std::vector<int> all{member.process.pid()};
+  if (member.process.relation() != Relation::kAdopted) all = members_of_group(all.front());
+  for (const int pid : all) {
+    auto dump = core_dump_of(pid);
+    if (!dump) continue;
+    if (!member.dump_until) {
+      member.dump_until = later(now, kDump);
+      member.is_dump_awaited = true;
+      inbox_.put(StartBarred{member.component, *dump});
+    }
+    return now < *member.dump_until ? std::move(dump) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+void Supervisor::await_dump_no_more(Member& member) {
+  if (std::exchange(member.is_dump_awaited, false)) inbox_.put(StartBarred{member.component, ""});
+}
+
 std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending ending) const {
   for (const Member& member : members_) {
     if (member.component != component) continue;
@@ -67,6 +88,11 @@ void Supervisor::stop(CommandId command, ComponentId component, int pid, Ending 
     return answer(command, Outcome::kDone, "process " + std::to_string(pid) + " has a successor");
   if (auto why = why_not_end(component, ending))
     return answer(command, Outcome::kRefused, std::move(*why));
+  for (Member& member : members_) {
+    if (member.component != component || ending == Ending::kForGood) continue;
+    if (const auto dump = awaited_dump(member, live_now()))
+      return answer(command, Outcome::kRefused, rules_[component].name + " is not ended: " + *dump);
+  }
   const auto trial = std::ranges::find(trials_, component, &Trial::component);
   if (trial != trials_.end()) {
     trial->commands.push_back(command);
@@ -244,6 +270,7 @@ void Supervisor::end_member(Member& member) {
     if (!member.variable.empty()) end_what_is_left(member.component, member.variable);
   }
   ports_.keep(member.process.pid());  // before anybody can order a successor
+  await_dump_no_more(member);
   inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), end.remark,
                          is_ours ? Cause::kWish : cause_of_end(member, end)});
   ended_[member.component] = {member.process.pid(), member.number};
@@ -294,6 +321,11 @@ void Supervisor::finish_shutdowns(Time now) {
 }
 
 void Supervisor::escalate(Shutdown& shutdown, Time now) {
+  for (Member& member : members_) {
+    if (!is_meant(shutdown, member) || !awaited_dump(member, now)) continue;
+    shutdown.escalate = later(now, kStatePeriod);
+    return;
+  }
   const bool is_stopped = std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
     return is_meant(shutdown, m) && m.state == ProcessState::kStopped;
   });

@@ -1,6 +1,8 @@
 #include "owners/supervisor.h"
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <fcntl.h>
 #include <fstream>
 #include <linux/capability.h>
@@ -10,6 +12,7 @@
 #include <set>
 #include <signal.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
@@ -917,6 +920,47 @@ TEST(WatchedProcess, OneThatADebuggerHoldsIsNotStopped) {
 }
 
 // A person looks at it; but what is to stop for good does.
+// A process whose core dump takes a moment.
+int with_much_memory(const test::TestFolder& folder) {
+  const int pid = fork();
+  if (pid != 0) return pid;
+  constexpr std::size_t kBytes = std::size_t{384} << 20;
+  const rlimit all{RLIM_INFINITY, RLIM_INFINITY};
+  if (chdir(folder.path().c_str()) != 0 || setrlimit(RLIMIT_CORE, &all) != 0) _exit(1);
+  void* memory = mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) _exit(1);
+  std::memset(memory, 1, kBytes);
+  close(creat("ready", 0600));
+  while (true) pause();
+}
+
+TEST(Supervisor, WaitsForTheCoreDumpOfAProcessThatCrashed) {
+  std::string pattern;
+  std::ifstream("/proc/sys/kernel/core_pattern") >> pattern;
+  if (pattern != "core") GTEST_SKIP() << "this machine writes core dumps elsewhere";
+  const test::TestFolder folder;
+  const int pid = with_much_memory(folder);
+  while (!std::filesystem::exists(folder / "ready") && is_alive(pid))
+    std::this_thread::sleep_for(10ms);
+  Supervised c("sleep 1000");
+  c.supervisor->adopt(ComponentId(0), pid, live_now());
+  kill(pid, SIGSEGV);
+  while (!core_dump_of(pid)) {
+    if (!is_alive(pid)) GTEST_SKIP() << "this machine writes no core dump, or in no time";
+  }
+  c.supervisor->stop({7}, ComponentId(0), 0, Ending::kToStartAgain, Hangs::kYes);
+  EXPECT_EQ(c.missing(),
+            "the core dump of its crashed process " + std::to_string(pid) + " is not complete");
+  EXPECT_EQ(c.reply_to({7}).outcome, Outcome::kRefused);
+  c.supervisor->stop({8}, ComponentId(0), 0, Ending::kForGood, Hangs::kYes);
+  c.nothing_missing();
+  EXPECT_EQ(c.reply_to({8}).outcome, Outcome::kDone);
+  std::uintmax_t dumped = 0;
+  for (const auto& each : std::filesystem::directory_iterator(folder.path()))
+    dumped = std::max(dumped, each.file_size());
+  EXPECT_GE(dumped, std::uintmax_t{384} << 20) << "it is cut";
+}
+
 TEST(Supervisor, DoesNotReplaceWhatADebuggerHolds) {
   Supervised c("sleep 1000");
   const int pid = c.start();
