@@ -87,7 +87,7 @@ struct Composed : testing::Test {
   std::string keeps() const { return (world.folder() / "keeps").string(); }
   // The output of a box that culprit started.
   std::string said() const {
-    std::ifstream in(state() + "/log/box.log");
+    std::ifstream in(state() + "/log/" + domain() + "--box.log");
     return {std::istreambuf_iterator<char>(in), {}};
   }
   template <class Done>

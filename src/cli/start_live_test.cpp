@@ -304,7 +304,9 @@ RULE LidarGone
   kill(first, SIGSTOP);
   EXPECT_TRUE(run.prints("LidarGone resolved")) << run.output();
   ASSERT_TRUE(eventually([&] { return pid_in(run.output(), "lidar") != first; }));
-  EXPECT_FALSE(std::filesystem::exists(state() + "/log/lidar.log")) << "culprit started one";
+  EXPECT_FALSE(
+      std::filesystem::exists(state() + "/log/" + std::to_string(domain()) + "--lidar.log"))
+      << "culprit started one";
   std::ifstream parent("/proc/" + std::to_string(pid_in(run.output(), "lidar")) + "/status");
   const std::string status(std::istreambuf_iterator<char>(parent), {});
   EXPECT_THAT(status, HasSubstr("PPid:\t" + std::to_string(launcher.pid()) + "\n"));

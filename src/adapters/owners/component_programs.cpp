@@ -13,8 +13,14 @@
 
 namespace culprit::owners {
 
+std::filesystem::path ComponentPrograms::file_of(ComponentId component) const {
+  std::string file = robot.empty() ? rules[component].name : mark(component);
+  std::ranges::replace(file, '/', '-');
+  return log_folder / file;
+}
+
 std::filesystem::path ComponentPrograms::log(ComponentId component) const {
-  return log_folder / (rules[component].name + ".log");
+  return file_of(component).native() + ".log";
 }
 
 Expected<std::vector<std::string>> ComponentPrograms::environment(ComponentId component) const {
@@ -46,10 +52,7 @@ Expected<FileDescriptor> ComponentPrograms::lock_start(ComponentId component) co
   const std::string& name = rules[component].name;
   std::error_code error;
   std::filesystem::create_directories(log_folder, error);
-  // Robots of one machine may share the folder.
-  std::string file = robot.empty() ? name : mark(component);
-  std::ranges::replace(file, '/', '-');
-  const std::filesystem::path path = log_folder / (file + ".start");
+  const std::filesystem::path path = file_of(component).native() + ".start";
   FileDescriptor lock(
       open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0600));
   if (!lock)

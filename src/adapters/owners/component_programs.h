@@ -25,6 +25,8 @@ struct ComponentPrograms {
   std::vector<Expected<std::vector<std::string>>> environments;
 
   std::string mark(ComponentId component) const { return robot + "/" + rules[component].name; }
+  // Without its ending: "0-sunset-camera". Robots of one machine may share the folder.
+  std::filesystem::path file_of(ComponentId component) const;
   std::filesystem::path log(ComponentId component) const;
   Expected<std::vector<std::string>> environment(ComponentId component) const;
   // `launcher`: the launcher whose process it stands in for; 0: none.

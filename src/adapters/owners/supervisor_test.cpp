@@ -118,11 +118,16 @@ class Supervised {
       return std::holds_alternative<ProcessWorked>(o.what);
     });
   }
+  std::filesystem::path log() const {
+    std::string name = robot_.empty() ? "c" : robot_ + "/c";
+    std::ranges::replace(name, '/', '-');
+    return folder_ / (name + ".log");
+  }
   std::string log_when(const std::string& part) {
     std::string text;
     for (int tries = 0; tries < 1000 && text.find(part) == std::string::npos; ++tries) {
       std::this_thread::sleep_for(10ms);
-      std::ifstream file(folder_ / "c.log");
+      std::ifstream file(log());
       text.assign(std::istreambuf_iterator<char>(file), {});
     }
     return text;
@@ -397,6 +402,16 @@ TEST(Supervisor, RobotsThatShareAFolderNoteTheirLaunchersApart) {
     kill(launcher, SIGKILL);
     waitpid(launcher, nullptr, 0);
   }
+}
+
+TEST(Supervisor, RobotsThatShareAFolderHaveLogsOfTheirOwn) {
+  Supervised one("sh -c 'echo of one; exec sleep 1000'", "0/one");
+  Supervised two("sh -c 'echo of two; exec sleep 1000'", "0/two");
+  ASSERT_EQ(one.folder(), two.folder());
+  one.start();
+  two.start();
+  EXPECT_EQ(one.log_when("of one\n"), "of one\n");
+  EXPECT_EQ(two.log_when("of two\n"), "of two\n");
 }
 
 // A terminal with a shell that runs a program as a job, in the foreground or not.
