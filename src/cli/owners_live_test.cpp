@@ -190,6 +190,39 @@ TEST_F(NodesOfARealSystemd, ThatItHasNotAreToldBeforeAnythingBreaks) {
               HasSubstr("the user's systemd has no lydar.service; did you mean lidar.service?"));
 }
 
+// An upgrade of the engine with live-restore: its containers run on, and it does not answer.
+TEST(NodesOfAStandInForDocker, AreLeftAloneWhileTheEngineIsAway) {
+  const TestWorld world;
+  owners::TestEngine engine;
+  engine.add("lidar_1",
+             {.command = {(own_folder() / "ros2_peer_node").string(),
+                          std::to_string(ros2::options_from_environment()->domain), "/lidar"}});
+  const int first = engine.start("lidar_1");
+  const auto rules = world.write(
+      "container.rules",
+      "COMPONENT lidar NODE /lidar CONTAINER docker lidar_1\nRULE LidarGone\n  POLICIES ERROR\n"
+      "  TRIGGER alive(lidar) == false\n    STRATEGY lidar_redeploy 90 10\n"
+      "      ADAPTATION lidar redeploy 5\n");
+  const TestProgram culprit(world, {"culprit", "run", rules, "--settle", "0.2", "--state-dir",
+                                    (world.folder() / "state").string()});
+  ASSERT_TRUE(culprit.prints("lidar is there (process " + std::to_string(first) + ")"))
+      << culprit.output();
+  ASSERT_TRUE(culprit.prints("watching")) << culprit.output();
+  engine.hang(true);
+  std::this_thread::sleep_for(6s);  // that nothing happens takes time
+  EXPECT_THAT(culprit.output(), Not(HasSubstr("lidar is lost")));
+  // One that crashes meanwhile waits for the engine, and no attempt is spent.
+  kill(first, SIGKILL);
+  EXPECT_TRUE(culprit.prints("lidar cannot be started: docker: it does not answer"))
+      << culprit.output();
+  std::this_thread::sleep_for(6s);
+  EXPECT_THAT(culprit.output(), Not(HasSubstr("exhausted")));
+  EXPECT_THAT(engine.asked(), testing::IsEmpty());
+  engine.hang(false);
+  EXPECT_TRUE(culprit.prints("LidarGone resolved by lidar_redeploy")) << culprit.output();
+  EXPECT_THAT(engine.asked(), testing::ElementsAre("start lidar_1"));
+}
+
 // The engine is a stand-in that speaks the Docker Engine API.
 TEST(NodesOfAStandInForDocker, ThatHangOrAreKilledAreStartedOnceByIt) {
   const TestWorld world;

@@ -205,6 +205,24 @@ TEST_F(ContainersOnAStandInForDocker, AreNotEndedOnWordsThatMakeNoSense) {
   EXPECT_THAT(engine.asked(), IsEmpty());
 }
 
+// It is being upgraded: no attempt helps until it is back, and its containers may run on (live-restore).
+TEST_F(ContainersOnAStandInForDocker, CannotBeStartedUntilTheEngineAnswersAgain) {
+  const int pid = engine.start("slam");
+  engine.hang(true);
+  const auto barred = [&](bool is_barred) {
+    return wait_for<StartBarred>(
+        [&](const StartBarred& b) { return b.missing.empty() != is_barred; });
+  };
+  units->stop(CommandId{++count}, kSlam, pid, Ending::kToStartAgain, Hangs::kNo);
+  const auto away = barred(true);
+  ASSERT_TRUE(away);
+  EXPECT_EQ(away->missing, "docker: it does not answer");
+  engine.hang(false);
+  EXPECT_TRUE(barred(false));
+  EXPECT_TRUE(is_alive(pid));
+  EXPECT_THAT(engine.asked(), IsEmpty());
+}
+
 TEST_F(ContainersOnAStandInForDocker, AreRefusedInTimeIfTheEngineHangsOrIsGone) {
   const int pid = engine.start("slam");
   engine.hang(true);

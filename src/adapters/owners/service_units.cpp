@@ -209,6 +209,10 @@ void Units::look_at(ComponentId component, const UnitState& state) {
   if (runs_anew) ended_here_.erase(ended_here);
 }
 
+void Units::bar(ComponentId component, std::string why) {
+  if (barred_.insert(component).second) inbox_.put(StartBarred{component, std::move(why)});
+}
+
 // The kernel reports an end sooner than it is known that a person had ordered it.
 bool Units::is_news_of_an_order(const Errand& errand, const UnitState& state) const {
   const auto before = before_.find(errand.component);
@@ -297,11 +301,14 @@ bool Units::advance(Errand& errand) {
     if (!is_here() && !owner.was_reached() && live_now() < later(errand.since, kReconnect))
       return false;
     if (errand.was_asked && live_now() < std::min(errand.until, errand.latest)) return false;
+    const bool is_away = is_here() && !owner.was_reached() && !errand.was_asked;
+    if (is_away && errand.kind != Errand::Kind::kEnd)
+      bar(errand.component, state.error().substr(0, state.error().rfind("; ")));
     return answer(errand, errand.was_asked ? Outcome::kTimedOut : Outcome::kRefused, state.error());
   }
   if (!state->is_loaded) {
     const std::string why = not_loaded(name, *state, owner).message;
-    if (barred_.insert(errand.component).second) inbox_.put(StartBarred{errand.component, why});
+    bar(errand.component, why);
     return answer(errand, Outcome::kRefused, why);
   }
   if (is_news_of_an_order(errand, *state)) {
@@ -370,7 +377,7 @@ std::optional<std::string> Units::hold_of(const Errand& errand, const UnitState&
     if (auto hold = hold_of_debugger(pid)) return hold;
     const auto dump = awaited_dump(errand.component, pid);
     if (!dump) continue;
-    if (barred_.insert(errand.component).second) inbox_.put(StartBarred{errand.component, *dump});
+    bar(errand.component, *dump);
     return name_of(errand.component) + " is not ended: " + *dump;
   }
   return std::nullopt;

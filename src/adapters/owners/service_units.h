@@ -10,7 +10,8 @@
 //
 // Proof before harm: if the process is not part of the unit, ending the unit would not end it, so
 // nothing is ended then; nor is a process replaced that a debugger holds. If systemd cannot be
-// asked, or refuses, that is the answer, and nothing was ended.
+// asked, or refuses, that is the answer, and nothing was ended. If it does not answer, as during an upgrade, its components
+// cannot be started until it does (StartBarred), whether or not they run on meanwhile.
 //
 // A process that was started is reported as working (ProcessWorked) as long as it works, until its
 // node is there: so a slow start is not taken for a hang.
@@ -132,6 +133,7 @@ class Units {
   void run();
   void look_at_all();
   void look_at(ComponentId component, const UnitState& state);
+  void bar(ComponentId component, std::string why);
   bool is_news_of_an_order(const Errand& errand, const UnitState& state) const;
   void note_reach(const std::optional<std::string>& trouble);
   void note_main_process(ComponentId component, const UnitState& state);
