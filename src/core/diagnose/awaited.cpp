@@ -1,7 +1,6 @@
 #include "diagnose/awaited.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "diagnose/touched.h"
 
@@ -235,9 +234,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     const Time until = fades(failure, past, passed_on);
     if (until > found.until) found = {until, past.rule.value_or(failure), true, past.component};
   };
-  std::vector<ComponentId> about = touched_by(failure, knowledge_);
-  std::ranges::copy(watched_beside(failure, knowledge_), std::back_inserter(about));
-  for (const ComponentId c : about) {
+  for (const ComponentId c : downstream_of_causes(failure, knowledge_)) {
     const auto scc = knowledge_.graph.scc_of(c);
     if (!scc) continue;
     const Place& place = places_[*scc];

@@ -241,12 +241,10 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
     const auto row = causes_[i];
     const std::vector<ComponentId> touched = touched_by(nodes_[i].rule, knowledge);
     const BitRows& from = nodes_[i].is_outage ? touching : spreading;
-    const auto look_upstream_of = [&](ComponentId c) {
+    for (const ComponentId c : downstream_of_causes(nodes_[i].rule, knowledge)) {
       for_each(paths.upstream(reach.place_of(c), nodes_[i].rule),
                [&](std::size_t place) { add(row, from[place]); });
-    };
-    std::ranges::for_each(touched, look_upstream_of);
-    std::ranges::for_each(watched_beside(nodes_[i].rule, knowledge), look_upstream_of);
+    }
     connect_learned(knowledge, i);
     clear(row, i);
     for_each(row, [&](std::size_t j) {
@@ -305,7 +303,7 @@ void Causes::leave_out_slight(const Knowledge& knowledge) {
   };
   for (std::size_t i = 0; i < size(); ++i) {
     if (!nodes_[i].is_rule()) continue;
-    const std::vector<ComponentId> consumers = touched_by(nodes_[i].rule, knowledge);
+    const std::vector<ComponentId> consumers = downstream_of_causes(nodes_[i].rule, knowledge);
     for_each(slight[level_of(rules[nodes_[i].rule])], [&](std::size_t cause) {
       if (has(causes_[i], cause) && !is_declared(cause, consumers)) clear(causes_[i], cause);
     });

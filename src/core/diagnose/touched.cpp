@@ -108,6 +108,12 @@ std::vector<ComponentId> watched_beside(RuleId rule, const Knowledge& knowledge)
   return read;
 }
 
+std::vector<ComponentId> downstream_of_causes(RuleId rule, const Knowledge& knowledge) {
+  std::vector<ComponentId> all = touched_by(rule, knowledge);
+  std::ranges::copy(watched_beside(rule, knowledge), std::back_inserter(all));
+  return all;
+}
+
 std::vector<ComponentId> spreads_from(RuleId rule, const Knowledge& knowledge) {
   std::vector<ComponentId> all = touched_by(rule, knowledge);
   if (symptom_of(rule, knowledge) == Symptom::kOutage) return all;

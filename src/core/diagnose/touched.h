@@ -21,6 +21,8 @@ bool is_mended(RuleId rule, const RuleSet& rules);
 // The publishers of what the rule reads, if it mends only others (a container, a hub): it shows the effects of what is upstream
 // of these, too. A rule that only reconfigures another component is about that one: the robot drives more slowly.
 std::vector<ComponentId> watched_beside(RuleId rule, const Knowledge& knowledge);
+// Both: the causes of the failure are upstream of these.
+std::vector<ComponentId> downstream_of_causes(RuleId rule, const Knowledge& knowledge);
 // From where the failure may spread to failures of values: these, and of a bad value that is mended only
 // elsewhere (a lamp is switched on where a camera sees too little) also the component whose value it is. A
 // rule that only reconfigures another component may be about a good value: the robot drives on.
