@@ -16,6 +16,7 @@ struct Signs {
   std::array<bool, 2> has_ill{};       // a rule of that kind is not quiet, or imminent
   std::array<Duration, 2> fires_in{};  // after an onset, the quiet rules of that kind
   std::array<Time, 2> ill_since{kLongAgo, kLongAgo};  // the latest onset of what is ill
+  bool may_end_data = false;  // its bad values may end what its consumers send, though they arrive
 
   // Bad values come of outages too, but no outages of bad values.
   bool is_ill(Symptom symptom) const {
@@ -26,9 +27,8 @@ struct Signs {
     return std::max(ill_since[static_cast<std::size_t>(Symptom::kOutage)],
                     ill_since[static_cast<std::size_t>(symptom)]);
   }
-  // Data that are bad may end the consumer's, though they arrive.
   bool is_well(Symptom symptom) const {
-    return !has_ill[0] && !has_ill[1] && is_watched[static_cast<std::size_t>(symptom)];
+    return !is_ill(symptom) && !may_end_data && is_watched[static_cast<std::size_t>(symptom)];
   }
 };
 
@@ -53,6 +53,30 @@ bool has_heard(RuleId rule, const Knowledge& knowledge) {
   });
 }
 
+// May the values by which the rule fails end what the consumers of `component` send? Not another state of the robot's mission; and
+// where nothing is broken, as the rule only reconfigures, only if a DEPENDENCY says that others need it.
+bool may_end_data(RuleId id, ComponentId component, const RuleSet& rules) {
+  const Rule& rule = rules[id];
+  if (rule.policies.on_change) return false;
+  return is_mended(id, rules) ||
+         std::ranges::find(rules.dependencies, component, &Dependency::producer) !=
+             rules.dependencies.end();
+}
+
+// No age shows that a topic has become slow. One that is sent on demand may come late and mean nothing.
+void add_slow_topics(const Knowledge& knowledge, std::vector<Signs>& signs) {
+  const auto outage = static_cast<std::size_t>(Symptom::kOutage);
+  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
+    const auto& rhythm = knowledge.signals.rhythm(TopicId(t));
+    if (!rhythm.slowing || rhythm.slowing->over != rhythm.last || !rhythm.is_steady()) continue;
+    const auto publisher = knowledge.graph.only_publisher(knowledge.rules[TopicId(t)]);
+    if (!publisher) continue;
+    Signs& of = signs[publisher->index];
+    of.has_ill[outage] = true;
+    of.ill_since[outage] = std::max(of.ill_since[outage], rhythm.slowing->since);
+  }
+}
+
 std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> imminent,
                             std::span<const std::optional<TroubleSeen>> troubles) {
   std::vector<Signs> signs(knowledge.rules.components.size());
@@ -61,6 +85,8 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
     for (const ComponentId c : spreads_from(rule, knowledge)) {
       signs[c.index].has_ill[symptom] = true;
       signs[c.index].ill_since[symptom] = std::max(signs[c.index].ill_since[symptom], since);
+      if (symptom == static_cast<std::size_t>(Symptom::kValue))
+        signs[c.index].may_end_data |= may_end_data(rule, c, knowledge.rules);
     }
   };
   const auto add_quiet = [&](RuleId rule) {
@@ -87,17 +113,8 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
   }
   for (const RuleId rule : imminent)
     add_ill(rule, onset_now(rule, knowledge.now, knowledge).latest);
+  add_slow_topics(knowledge, signs);
   const auto outage = static_cast<std::size_t>(Symptom::kOutage);
-  // No age shows that a topic has become slow.
-  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
-    const auto& rhythm = knowledge.signals.rhythm(TopicId(t));
-    if (!rhythm.slowing || rhythm.slowing->over != rhythm.last) continue;
-    const auto publisher = knowledge.graph.only_publisher(knowledge.rules[TopicId(t)]);
-    if (!publisher) continue;
-    Signs& of = signs[publisher->index];
-    of.has_ill[outage] = true;
-    of.ill_since[outage] = std::max(of.ill_since[outage], rhythm.slowing->since);
-  }
   for (std::size_t c = 0; c < signs.size(); ++c) {
     if (!troubles[c]) continue;
     signs[c].has_ill[outage] = true;

@@ -3,9 +3,10 @@
 // A chain of effects does not go through a component that shows none. Left out, for failures of one
 // kind of symptom (an outage, or a bad value), are
 //   - components that are well: a rule of that kind touches them and is quiet, no rule that touches
-//     them fails or is imminent, and they are in no trouble; a component that sends has no outage,
-//     however bad the values are. A rule that tells nothing of data (timing.h) does not count: that a
-//     node answers or is active is no proof that anything comes through it;
+//     them fails or is imminent, none of their topics has become slow, and they are in no trouble. Bad
+//     data may end their consumer, though they arrive, unless the rule only reconfigures. A rule that
+//     tells nothing of data (timing.h) does not count: that a node answers or is active is no proof
+//     that anything comes through it;
 //   - topics and services that evidently carry no failures: of n consumers that are well or
 //     fail, more are well than kSpared n and kDeviations standard deviations of the binomial
 //     distribution. /tf and its like are read by many. A consumer that is quiet counts once its rules would have
