@@ -2,7 +2,6 @@
 #include "bag/thinned_curve.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <future>
 #include <httplib.h>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <sys/socket.h>

@@ -14,7 +14,6 @@
 #include "base/test_folder.h"
 #include "journal/reader.h"
 #include "journal/unwritten.h"
-#include "json/json.h"
 #include "language/checker.h"
 
 namespace culprit::journal {

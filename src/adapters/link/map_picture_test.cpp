@@ -1,6 +1,5 @@
 #include "link/map_picture.h"
 
-#include <cmath>
 #include <limits>
 #include <numbers>
 

@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/live_clock.h"
 #include "language/checker.h"
 #include "ros2/live_test.h"
 #include "ros2/parameter_store.h"

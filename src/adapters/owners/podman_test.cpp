@@ -7,7 +7,6 @@
 #include <thread>
 #include <unistd.h>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/test_folder.h"

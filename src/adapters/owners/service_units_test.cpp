@@ -12,7 +12,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "language/checker.h"
 #include "owners/proc.h"
 #include "owners/test_asked_owner.h"
 #include "owners/test_process.h"

@@ -1,7 +1,6 @@
 #include "owners/setup.h"
 
 #include <algorithm>
-#include <poll.h>
 #include <string_view>
 #include <sys/wait.h>
 #include <unistd.h>
