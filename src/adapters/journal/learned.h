@@ -59,9 +59,9 @@ std::vector<LearnedCoincidence> named(const Coincidences& coincidences, const Co
                                       const RuleSet& rules);
 
 struct Learned {
-  std::vector<LearnedBelief> beliefs;
-  std::vector<LearnedCoupling> couplings;
-  std::vector<LearnedLatency> latencies;
+  std::vector<LearnedBelief> beliefs{};
+  std::vector<LearnedCoupling> couplings{};
+  std::vector<LearnedLatency> latencies{};
   // They change with each detection. So they make no rows, and nobody waits until they are on the disk.
   std::vector<LearnedCoincidence> coincidences{};
 

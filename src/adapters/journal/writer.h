@@ -24,8 +24,8 @@ namespace culprit::journal {
 enum class Durability : std::uint8_t { kProcessEnd, kPowerFailure };
 
 struct Batch {
-  std::vector<Entry> entries;  // without `id`
-  Learned learned;             // what changed; each change makes a row, too, but of coincidences
+  std::vector<Entry> entries{};  // without `id`
+  Learned learned{};             // what changed; each change makes a row, too, but of coincidences
 };
 
 class Writer {

@@ -121,9 +121,7 @@ TEST(Chain, ShowsABeliefThatWasChangedBehindItsBack) {
   const TestFolder folder;
   {
     Writer writer = open(folder / "a.journal");
-    Batch all;
-    all.learned.beliefs = {kBelief};
-    ASSERT_TRUE(append(writer, all));
+    ASSERT_TRUE(append(writer, Batch{.learned = {.beliefs = {kBelief}}}));
   }
   run_sql(folder / "a.journal", "UPDATE belief SET alpha = 1000");
   EXPECT_THAT(verified(folder / "a.journal").findings,
@@ -149,9 +147,7 @@ TEST(Rotation, DropsTheOldestRowsAndTheChainStillHolds) {
 
 TEST(Rotation, DropsWhatIsTooOld) {
   const TestFolder folder;
-  Writer::Options options;
-  options.max_age_ns = 1000;
-  Writer writer = open(folder / "a.journal", options);
+  Writer writer = open(folder / "a.journal", {.max_age_ns = 1000});
   ASSERT_TRUE(append(writer, batch(10)));
   ASSERT_TRUE(writer.append({{{0, kWrittenAt + 2000, "gap", "{}"}}, {}}, kWrittenAt + 2000,
                             Durability::kProcessEnd));
@@ -273,9 +269,7 @@ void make_old(const std::filesystem::path& path) {
 Writer open_with_couplings(const std::filesystem::path& path,
                            const std::vector<LearnedCoupling>& couplings) {
   Writer writer = open(path);
-  Batch all;
-  all.learned.couplings = couplings;
-  EXPECT_TRUE(append(writer, all));
+  EXPECT_TRUE(append(writer, Batch{.learned = {.couplings = couplings}}));
   return writer;
 }
 
@@ -307,9 +301,7 @@ TEST(OlderFile, IsBroughtUpToDateWhenItIsWritten) {
   {
     Writer writer = open(folder / "a.journal");
     EXPECT_EQ(writer.remark(), "");
-    Batch all;
-    all.learned.latencies = latencies;
-    ASSERT_TRUE(append(writer, all));
+    ASSERT_TRUE(append(writer, Batch{.learned = {.latencies = latencies}}));
   }
   const Writer writer = open(folder / "a.journal");
   EXPECT_EQ(writer.remark(), "");
@@ -323,9 +315,7 @@ TEST(OlderFile, OnlyByItsVersionKeepsItsLatencies) {
   const std::vector<LearnedLatency> latencies = {{"Rule", 1, 0.25, 0.5}};
   {
     Writer writer = open(folder / "a.journal");
-    Batch all;
-    all.learned.latencies = latencies;
-    ASSERT_TRUE(append(writer, all));
+    ASSERT_TRUE(append(writer, Batch{.learned = {.latencies = latencies}}));
   }
   run_sql(folder / "a.journal", "PRAGMA user_version = 1");
   EXPECT_EQ(value_of(open(folder / "a.journal").learned()).latencies, latencies);
@@ -359,9 +349,7 @@ TEST(OlderFile, HasCouplingsWithoutExposure) {
 Writer open_with_coincidences(const std::filesystem::path& path,
                               const std::vector<LearnedCoincidence>& coincidences) {
   Writer writer = open(path);
-  Batch all;
-  all.learned.coincidences = coincidences;
-  EXPECT_TRUE(append(writer, all));
+  EXPECT_TRUE(append(writer, Batch{.learned = {.coincidences = coincidences}}));
   return writer;
 }
 
@@ -412,17 +400,13 @@ TEST(Writer, LeavesTheSecondCopyAloneForFailuresThatBeganTogether) {
   };
   {
     Writer writer = open_with_coincidences(folder / "a.journal", {{"Other", "Rule", 1}});
-    Batch all;
-    all.learned.coincidences = kTogether;
-    ASSERT_TRUE(append(writer, all));
+    ASSERT_TRUE(append(writer, Batch{.learned = {.coincidences = kTogether}}));
     EXPECT_EQ(copied(), (std::vector<LearnedCoincidence>{{"Other", "Rule", 1}}));
   }
   Writer writer = open(folder / "a.journal");
   EXPECT_EQ(writer.remark(), "") << "an older copy is no damage";
   EXPECT_EQ(value_of(writer.learned()).coincidences, kTogether);
-  Batch all;
-  all.learned.beliefs = {kBelief};
-  ASSERT_TRUE(append(writer, all));
+  ASSERT_TRUE(append(writer, Batch{.learned = {.beliefs = {kBelief}}}));
   EXPECT_EQ(copied(), kTogether);
 }
 
@@ -431,9 +415,7 @@ TEST(Faults, TheSecondCopyRestoresTheRestAndKeepsFailuresThatBeganTogether) {
   const std::vector<LearnedCoupling> couplings = {{"Rule", "Other", {2, 1, 3.5}}};
   {
     Writer writer = open_with_couplings(folder / "a.journal", couplings);
-    Batch all;
-    all.learned.coincidences = kTogether;
-    ASSERT_TRUE(append(writer, all));
+    ASSERT_TRUE(append(writer, Batch{.learned = {.coincidences = kTogether}}));
   }
   run_sql(folder / "a.journal", "UPDATE coupling SET spared = 1000");
   const Writer writer = open(folder / "a.journal");
@@ -464,10 +446,10 @@ TEST(OlderFile, HasRowsOfCouplingsWithoutExposure) {
   const TestFolder folder;
   {
     Writer writer = open_with_couplings(folder / "a.journal", {{"Rule", "Other", {2, 1, 3.5}}});
-    Batch older;
-    older.entries = {{0, kWrittenAt, std::string(kind::kCoupling),
-                      R"({"cause":"Rule","effect":"Third","cleared":1,"stayed":4})"}};
-    ASSERT_TRUE(append(writer, older));
+    ASSERT_TRUE(append(
+        writer,
+        Batch{.entries = {{0, kWrittenAt, std::string(kind::kCoupling),
+                           R"({"cause":"Rule","effect":"Third","cleared":1,"stayed":4})"}}}));
   }
   EXPECT_THAT(value_of(open(folder / "a.journal").learned()).couplings,
               testing::ElementsAre(LearnedCoupling{"Rule", "Other", {2, 1, 3.5}},
@@ -479,9 +461,7 @@ TEST(Faults, ALatencyThatWasChangedBehindItsBackIsKnownFromTheSecondCopy) {
   const std::vector<LearnedLatency> latencies = {{"Rule", 1, 0.25, 0.5}};
   {
     Writer writer = open(folder / "a.journal");
-    Batch all;
-    all.learned.latencies = latencies;
-    ASSERT_TRUE(append(writer, all));
+    ASSERT_TRUE(append(writer, Batch{.learned = {.latencies = latencies}}));
   }
   run_sql(folder / "a.journal", "UPDATE latency SET most = 1000");
   const Writer writer = open(folder / "a.journal");
@@ -567,16 +547,12 @@ TEST(Learned, OfAFleetIsAddedUp) {
 }
 
 TEST(Learned, LatenciesOfAFleetAreTheShortestAndTheLongest) {
-  Learned ours;
-  ours.latencies = {{"R", 2, 0.5, 1.5}, {"Forgotten", 0, 0, 0}};
-  Learned theirs;
-  theirs.latencies = {{"R", 3, 1, 2}, {"Forgotten", 1, 3, 4}, {"S", 1, 0.1, 0.1}, {"T", 0, 0, 0}};
-  merge(ours, theirs);
+  Learned ours{.latencies = {{"R", 2, 0.5, 1.5}, {"Forgotten", 0, 0, 0}}};
+  merge(ours, {.latencies = {
+                   {"R", 3, 1, 2}, {"Forgotten", 1, 3, 4}, {"S", 1, 0.1, 0.1}, {"T", 0, 0, 0}}});
   EXPECT_EQ(ours.latencies, (std::vector<LearnedLatency>{
                                 {"R", 5, 0.5, 2}, {"Forgotten", 1, 3, 4}, {"S", 1, 0.1, 0.1}}));
-  Learned many;
-  many.latencies = {{"R", Latencies::Learned::kMost, 1, 1}};
-  merge(ours, many);
+  merge(ours, {.latencies = {{"R", Latencies::Learned::kMost, 1, 1}}});
   EXPECT_EQ(ours.latencies[0].count, Latencies::Learned::kMost);
 }
 
@@ -599,15 +575,13 @@ TEST(Learned, LatenciesAreKeptToTheNanosecond) {
   const Latencies::Learned learned{
       7, {Duration(1'234'567'891), Duration(86'400'000'000'001), Duration(1'234'567'891)}};
   EXPECT_EQ(latency_from(named("R", learned)), learned);
-  Learned all;
-  all.latencies = {named("R", learned)};
-  const Learned read = value_of(learned_from_json(parse_json(to_line(to_json(all)))));
+  const Learned read = value_of(
+      learned_from_json(parse_json(to_line(to_json({.latencies = {named("R", learned)}})))));
   EXPECT_EQ(latency_from(read.latencies.at(0)), learned);
 }
 
 TEST(Learned, ExposureIsKeptToTheLastBitAndOlderCouplingsHaveNone) {
-  Learned all;
-  all.couplings = {{"R", "S", {2, 1, 31.0 / 7}}};
+  Learned all{.couplings = {{"R", "S", {2, 1, 31.0 / 7}}}};
   const auto read = [](const std::string& text) {
     return value_of(learned_from_json(parse_json(text))).couplings;
   };
@@ -678,12 +652,11 @@ TEST(Learned, GrowsFromANewPriorByWhatWasCounted) {
 TEST(Writer, ForgetsOneRuleOrAll) {
   const TestFolder folder;
   Writer writer = open(folder / "a.journal");
-  Batch all;
-  all.learned.beliefs = {kBelief, {"Other", "s", {2, 1}, {1, 1}}};
-  all.learned.couplings = {{"Rule", "Other", {1, 0}}};
-  all.learned.latencies = {{"Other", 1, 2, 2}, {"Rule", 3, 0.5, 2}};
-  all.learned.coincidences = kTogether;
-  ASSERT_TRUE(append(writer, all));
+  ASSERT_TRUE(
+      append(writer, Batch{.learned = {.beliefs = {kBelief, {"Other", "s", {2, 1}, {1, 1}}},
+                                       .couplings = {{"Rule", "Other", {1, 0}}},
+                                       .latencies = {{"Other", 1, 2, 2}, {"Rule", 3, 0.5, 2}},
+                                       .coincidences = kTogether}}));
   EXPECT_EQ(value_of(writer.forget("Rule", kWrittenAt)), 1);
   EXPECT_EQ(value_of(writer.learned()).beliefs.size(), 1u);
   EXPECT_TRUE(value_of(writer.learned()).couplings.empty());
@@ -699,8 +672,7 @@ TEST(Writer, ForgetsOneRuleOrAll) {
 TEST(Writer, WritesOnAfterItCouldNotForget) {
   const TestFolder folder;
   Writer writer = open(folder / "a.journal");
-  Batch all;
-  all.learned.beliefs = {kBelief};
+  Batch all{.learned = {.beliefs = {kBelief}}};
   ASSERT_TRUE(append(writer, all));
   run_sql(folder / "a.journal", "DROP TABLE coincidence; PRAGMA user_version = 2");
   EXPECT_FALSE(writer.forget("", kWrittenAt));

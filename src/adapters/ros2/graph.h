@@ -119,15 +119,15 @@ class Graph {
   using Listener = std::function<void(const GraphChange&)>;
 
   struct Options {
-    Listener listener;
-    FindProcess find_process;            // may be empty
-    IsRunning is_running;                // may be empty
-    IsEndedByOthers is_ended_by_others;  // may be empty
-    IsKeptHere is_kept_here{};           // may be empty
-    IsAskedAbout is_asked_about{};       // may be empty
-    IsComponent is_component{};          // may be empty
-    SourceOf source_of{};                // empty: all are of this machine
-    Limits limits;
+    Listener listener{};
+    FindProcess find_process{};            // may be empty
+    IsRunning is_running{};                // may be empty
+    IsEndedByOthers is_ended_by_others{};  // may be empty
+    IsKeptHere is_kept_here{};             // may be empty
+    IsAskedAbout is_asked_about{};         // may be empty
+    IsComponent is_component{};            // may be empty
+    SourceOf source_of{};                  // empty: all are of this machine
+    Limits limits{};
   };
 
   explicit Graph(Options options);

@@ -54,11 +54,8 @@ class Watched {
   explicit Watched(Graph::Options options = {}) : graph_(with_listener(std::move(options))) {}
 
   Watched& joins(std::uint8_t participant, int pid = 0) {
-    ParticipantInfo info;
-    info.guid = guid_of(participant, 0, false);
-    info.pid = pid;
-    info.vendor = Vendor::kFastDds;
-    graph_.apply(info);
+    graph_.apply(ParticipantInfo{
+        .guid = guid_of(participant, 0, false), .vendor = Vendor::kFastDds, .pid = pid});
     return *this;
   }
   Watched& leaves(std::uint8_t participant) {
@@ -179,16 +176,13 @@ TEST(Graph, EndpointsVanishBeforeTheirNode) {
 TEST(Graph, ShowsItsListenerWhoPublishesAfterTheChange) {
   std::vector<std::string> seen;
   const Graph* shown = nullptr;
-  Graph::Options options;
-  options.listener = [&](const GraphChange&) {
+  Graph graph({.listener = [&](const GraphChange&) {
     std::string publishers;
     for (const auto& [name, each] : shown->nodes_publishing("/t")) publishers += name + " ";
     seen.push_back(publishers + (shown->node("/a") ? "and /a is there" : "and /a is not"));
-  };
-  Graph graph(std::move(options));
+  }});
   shown = &graph;
-  ParticipantInfo info;
-  info.guid = guid_of(1, 0, false);
+  ParticipantInfo info{.guid = guid_of(1, 0, false)};
   graph.apply(info);
   graph.apply(publishes(writer(1, 1), "/t"));
   graph.apply(DiscoveryInfo{info.guid, {node("/", "a", {writer(1, 1)})}});
@@ -276,10 +270,11 @@ TEST(Graph, AnAbsentNodeSaysNothing) {
 
 TEST(Graph, ARestartedNodeReplacesItsDeadPredecessor) {
   std::set<int> running = {10, 20};
-  Graph::Options options;
-  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
-  options.is_running = [&](int pid) { return running.contains(pid); };
-  Watched watched(options);
+  Watched watched({.find_process =
+                       [](const ParticipantInfo& info) {
+                         return FoundProcess{info.pid, ""};
+                       },
+                   .is_running = [&](int pid) { return running.contains(pid); }});
   watched.joins(1, 10).has(publishes(writer(1, 1), "/t")).says(1, {node("/", "a", {writer(1, 1)})});
   EXPECT_THAT(watched.told(), ElementsAre("+/a in 10", "+/a publishes /t"));
 
@@ -294,10 +289,11 @@ TEST(Graph, ARestartedNodeReplacesItsDeadPredecessor) {
 }
 
 TEST(Graph, TwoLivingNodesOfOneNameAreTrouble) {
-  Graph::Options options;
-  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
-  options.is_running = [](int) { return true; };
-  Watched watched(options);
+  Watched watched({.find_process =
+                       [](const ParticipantInfo& info) {
+                         return FoundProcess{info.pid, ""};
+                       },
+                   .is_running = [](int) { return true; }});
   watched.joins(1, 10)
       .has(publishes(writer(1, 1), "/t"))
       .says(1, {node("/", "a", {writer(1, 1)})})
@@ -314,10 +310,11 @@ TEST(Graph, TwoLivingNodesOfOneNameAreTrouble) {
 }
 
 TEST(Graph, SeveralMayLookAtARobotByHiddenNodesOfOneName) {
-  Graph::Options options;
-  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
-  options.is_running = [](int) { return true; };
-  Watched watched(options);
+  Watched watched({.find_process =
+                       [](const ParticipantInfo& info) {
+                         return FoundProcess{info.pid, ""};
+                       },
+                   .is_running = [](int) { return true; }});
   watched.joins(1, 10).says(1, {node("/", "_survey")}).told();
   watched.joins(2, 20).says(2, {node("/", "_survey")});
   EXPECT_THAT(watched.told(), Not(Contains(HasSubstr("two nodes"))));
@@ -325,10 +322,11 @@ TEST(Graph, SeveralMayLookAtARobotByHiddenNodesOfOneName) {
 
 TEST(Graph, ANamesakeIsForgottenWhenItsProcessHasEnded) {
   std::set<int> running = {10, 20};
-  Graph::Options options;
-  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
-  options.is_running = [&](int pid) { return running.contains(pid); };
-  Watched watched(options);
+  Watched watched({.find_process =
+                       [](const ParticipantInfo& info) {
+                         return FoundProcess{info.pid, ""};
+                       },
+                   .is_running = [&](int pid) { return running.contains(pid); }});
   watched.joins(1, 10).says(1, {node("/", "a")}).joins(2, 20).says(2, {node("/", "a")}).told();
   watched.looks_for_ended_namesakes();
   EXPECT_THAT(watched.told(), IsEmpty()) << "both run";
@@ -342,12 +340,11 @@ TEST(Graph, ANamesakeIsForgottenWhenItsProcessHasEnded) {
 
 TEST(Graph, AnUnprovenNamesakeIsForgottenWhenItsSocketsAreGone) {
   std::set<int> ended;
-  Graph::Options options;
-  options.find_process = [&](const ParticipantInfo& info) {
-    return FoundProcess{0, "", ended.contains(info.pid)};
-  };
-  options.is_running = [](int) { return true; };
-  Watched watched(options);
+  Watched watched({.find_process =
+                       [&](const ParticipantInfo& info) {
+                         return FoundProcess{0, "", ended.contains(info.pid)};
+                       },
+                   .is_running = [](int) { return true; }});
   watched.joins(1, 10).says(1, {node("/", "a")}).joins(2, 20).says(2, {node("/", "a")}).told();
   watched.looks_for_ended_namesakes();
   EXPECT_THAT(watched.told(), IsEmpty());
@@ -361,13 +358,12 @@ TEST(Graph, AnUnprovenNamesakeIsForgottenWhenItsSocketsAreGone) {
 
 TEST(Graph, TheProcessOfManyNodesIsLookedForOnce) {
   int looks = 0;
-  Graph::Options options;
-  options.find_process = [&](const ParticipantInfo& info) {
-    ++looks;
-    return FoundProcess{info.pid, ""};
-  };
-  options.is_running = [](int) { return true; };
-  Watched watched(options);
+  Watched watched({.find_process =
+                       [&](const ParticipantInfo& info) {
+                         ++looks;
+                         return FoundProcess{info.pid, ""};
+                       },
+                   .is_running = [](int) { return true; }});
   watched.joins(1, 10).says(1, {node("/", "a"), node("/", "b"), node("/", "c")});
   EXPECT_EQ(looks, 1);
   watched.says(1, {node("/", "a"), node("/", "b"), node("/", "c"), node("/", "d")});
@@ -375,11 +371,9 @@ TEST(Graph, TheProcessOfManyNodesIsLookedForOnce) {
 }
 
 TEST(Graph, TellsOnceWhatIsMissingForTheProofOfAProcess) {
-  Graph::Options options;
-  options.find_process = [](const ParticipantInfo&) {
+  Watched watched({.find_process = [](const ParticipantInfo&) {
     return FoundProcess{0, "its user is another"};
-  };
-  Watched watched(options);
+  }});
   watched.joins(1, 10).says(1, {node("/", "a"), node("/", "b")});
   watched.says(1, {node("/", "a"), node("/", "b"), node("/", "c")});
   EXPECT_THAT(
@@ -390,12 +384,11 @@ TEST(Graph, TellsOnceWhatIsMissingForTheProofOfAProcess) {
 
 // A process may hold a node that another owner ends, and one that culprit ends.
 TEST(Graph, NothingIsMissingForANodeThatOthersEnd) {
-  Graph::Options options;
-  options.find_process = [](const ParticipantInfo&) {
-    return FoundProcess{0, "its user is another"};
-  };
-  options.is_ended_by_others = [](const std::string& node) { return node == "/a"; };
-  Watched watched(options);
+  Watched watched({.find_process =
+                       [](const ParticipantInfo&) {
+                         return FoundProcess{0, "its user is another"};
+                       },
+                   .is_ended_by_others = [](const std::string& node) { return node == "/a"; }});
   watched.joins(1, 10).says(1, {node("/", "a")});
   EXPECT_THAT(watched.told(), ElementsAre("+/a"));
   watched.joins(2, 20).says(2, {node("/", "a"), node("/", "b")});
@@ -408,12 +401,10 @@ TEST(Graph, NothingIsMissingForANodeThatOthersEnd) {
 
 TEST(Graph, TheProcessOfANodeThatCountsAgainIsLookedForAnew) {
   int looks = 0;
-  Graph::Options options;
-  options.find_process = [&](const ParticipantInfo&) {
+  Watched watched({.find_process = [&](const ParticipantInfo&) {
     ++looks;
     return FoundProcess{};
-  };
-  Watched watched(options);
+  }});
   watched.joins(1, 10).says(1, {node("/", "a")});
   watched.joins(2, 20).says(2, {node("/", "a")});
   watched.says(1, {node("/", "a"), node("/", "b")});  // the last that was looked for
@@ -423,9 +414,9 @@ TEST(Graph, TheProcessOfANodeThatCountsAgainIsLookedForAnew) {
 }
 
 TEST(Graph, AnEndedProcessIsGoneAtOnce) {
-  Graph::Options options;
-  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
-  Watched watched(options);
+  Watched watched({.find_process = [](const ParticipantInfo& info) {
+    return FoundProcess{info.pid, ""};
+  }});
   watched.joins(1, 10).joins(2, 20).joins(3);
   watched.says(1, {node("/", "a")}).says(2, {node("/", "b")}).says(3, {node("/", "c")}).told();
   watched.ends(10);
@@ -438,9 +429,7 @@ TEST(Graph, AnEndedProcessIsGoneAtOnce) {
 
 // One message announces that the camera has left. The listener that acts on that finds out first.
 TEST(Graph, ANodeThatIsAskedAboutStaysUntilItIsFoundToHaveLeft) {
-  Graph::Options options;
-  options.is_asked_about = [](const std::string& node) { return node == "/camera"; };
-  Watched watched(options);
+  Watched watched({.is_asked_about = [](const std::string& node) { return node == "/camera"; }});
   const NodeEntities camera = node("/", "camera", {writer(1, 1)});
   watched.joins(1)
       .says(1, {camera, node("/", "other")})
@@ -472,11 +461,9 @@ TEST(Graph, AClaimOfAStrangerIsNeitherTheNodeNorItsNamesake) {
   std::map<int, FoundProcess> found = {
       {10, {10, ""}}, {20, {0, "nobody here has it"}}, {30, {30, ""}}};
   std::set<int> running = {10, 30};
-  Graph::Options options;
-  options.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; };
-  options.is_running = [&](int pid) { return running.contains(pid); };
-  options.is_kept_here = [](const std::string& node) { return node == "/camera"; };
-  Watched watched(options);
+  Watched watched({.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; },
+                   .is_running = [&](int pid) { return running.contains(pid); },
+                   .is_kept_here = [](const std::string& node) { return node == "/camera"; }});
   watched.joins(1, 10).says(1, {node("/", "camera")}).told();
   watched.joins(2, 20).says(2, {node("/", "camera")});
   EXPECT_THAT(watched.told(), ElementsAre(HasSubstr("claims the name /camera")));
@@ -493,11 +480,9 @@ TEST(Graph, AClaimOfAStrangerIsNeitherTheNodeNorItsNamesake) {
 
 TEST(Graph, AProcessProvenLaterThanItClaimsANameHoldsItThen) {
   std::map<int, FoundProcess> found = {{10, {10, ""}}, {20, {0, "its datagrams are to come"}}};
-  Graph::Options options;
-  options.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; };
-  options.is_running = [](int) { return true; };
-  options.is_kept_here = [](const std::string&) { return true; };
-  Watched watched(options);
+  Watched watched({.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; },
+                   .is_running = [](int) { return true; },
+                   .is_kept_here = [](const std::string&) { return true; }});
   watched.joins(1, 10).says(1, {node("/", "camera")}).leaves(1);
   watched.joins(2, 20).says(2, {node("/", "camera")}).told();
   found[20] = {20, ""};
@@ -510,11 +495,9 @@ TEST(Graph, AProcessProvenLaterThanItClaimsANameHoldsItThen) {
 // As in a container whose files culprit may not see.
 TEST(Graph, RootsProcessesNeedNoProofToHoldAName) {
   std::map<int, FoundProcess> found = {{10, {10, ""}}, {20, {0, "of another user", false, true}}};
-  Graph::Options options;
-  options.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; };
-  options.is_running = [](int) { return true; };
-  options.is_kept_here = [](const std::string&) { return true; };
-  Watched watched(options);
+  Watched watched({.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; },
+                   .is_running = [](int) { return true; },
+                   .is_kept_here = [](const std::string&) { return true; }});
   watched.joins(1, 10).says(1, {node("/", "camera")}).leaves(1).told();
   watched.joins(2, 20).says(2, {node("/", "camera")});
   EXPECT_THAT(watched.told(), Contains("+/camera"));
@@ -522,14 +505,13 @@ TEST(Graph, RootsProcessesNeedNoProofToHoldAName) {
 
 // The stranger has participants 100 and up.
 Graph::Options with_strangers(Graph::Limits limits) {
-  Graph::Options options;
-  options.limits = limits;
-  options.source_of = [](const ParticipantInfo& info) {
-    const std::uint8_t number = info.guid.bytes[0];
-    return number >= 100 ? "10.0.0.9" : number >= 50 ? "10.0.0.5" : "";
-  };
-  options.is_component = [](const std::string& node) { return node == "/camera"; };
-  return options;
+  return {.is_component = [](const std::string& node) { return node == "/camera"; },
+          .source_of =
+              [](const ParticipantInfo& info) {
+                const std::uint8_t number = info.guid.bytes[0];
+                return number >= 100 ? "10.0.0.9" : number >= 50 ? "10.0.0.5" : "";
+              },
+          .limits = limits};
 }
 
 TEST(Graph, AStrangersParticipantsLeaveRoomForTheRobots) {
@@ -592,9 +574,7 @@ TEST(Graph, OneProcessWithTwoNodesOfOneNameIsTroubleOnce) {
 }
 
 TEST(Graph, KeepsTrackOfALimitedNumber) {
-  Graph::Options options;
-  options.limits = {.participants = 2, .nodes = 2, .endpoints = 2};
-  Watched watched(options);
+  Watched watched({.limits = {.participants = 2, .nodes = 2, .endpoints = 2}});
   watched.joins(1).joins(2).joins(3).joins(4);
   EXPECT_THAT(
       watched.told(),
@@ -659,8 +639,7 @@ TEST(Graph, TellsWhetherANodeThatLeftSaidGoodBye) {
                .is_ended_by_others = {},
                .limits = {}});
   for (const bool was_lost : {true, false}) {
-    ParticipantInfo info;
-    info.guid = guid_of(1, 0, false);
+    ParticipantInfo info{.guid = guid_of(1, 0, false)};
     graph.apply(info);
     graph.apply(DiscoveryInfo{info.guid, {node("/", "a")}});
     graph.apply(ParticipantGone{info.guid, was_lost});
@@ -671,27 +650,29 @@ TEST(Graph, TellsWhetherANodeThatLeftSaidGoodBye) {
 // In any order of events: the reported changes add up to the graph's content.
 RC_GTEST_PROP(Graph, WhatItTellsAddsUpToWhatItShows, ()) {
   std::set<std::string> nodes, edges;
-  Graph::Options options;
-  options.limits = {.participants = 2, .nodes = 3, .endpoints = 6};
-  options.listener = [&](const GraphChange& change) {
-    const auto edge = [](const std::string& n, EndpointKind kind, const std::string& name) {
-      return n + "|" + std::to_string(static_cast<int>(kind)) + "|" + name;
-    };
-    if (const auto* c = std::get_if<NodeJoined>(&change)) {
-      RC_ASSERT(nodes.insert(c->node.name).second);
-    } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
-      RC_ASSERT(nodes.erase(left->node) == 1u);
-      RC_ASSERT(std::ranges::none_of(
-          edges, [&](const auto& e) { return e.starts_with(left->node + "|"); }));
-    } else if (const auto* joined = std::get_if<EndpointJoined>(&change)) {
-      RC_ASSERT(nodes.contains(joined->node));
-      RC_ASSERT(
-          edges.insert(edge(joined->node, joined->endpoint.kind, joined->endpoint.name)).second);
-    } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
-      RC_ASSERT(edges.erase(edge(gone->node, gone->kind, gone->name)) == 1u);
-    }
-  };
-  Graph graph(options);
+  Graph graph(
+      {.listener =
+           [&](const GraphChange& change) {
+             const auto edge = [](const std::string& n, EndpointKind kind,
+                                  const std::string& name) {
+               return n + "|" + std::to_string(static_cast<int>(kind)) + "|" + name;
+             };
+             if (const auto* c = std::get_if<NodeJoined>(&change)) {
+               RC_ASSERT(nodes.insert(c->node.name).second);
+             } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
+               RC_ASSERT(nodes.erase(left->node) == 1u);
+               RC_ASSERT(std::ranges::none_of(
+                   edges, [&](const auto& e) { return e.starts_with(left->node + "|"); }));
+             } else if (const auto* joined = std::get_if<EndpointJoined>(&change)) {
+               RC_ASSERT(nodes.contains(joined->node));
+               RC_ASSERT(
+                   edges.insert(edge(joined->node, joined->endpoint.kind, joined->endpoint.name))
+                       .second);
+             } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
+               RC_ASSERT(edges.erase(edge(gone->node, gone->kind, gone->name)) == 1u);
+             }
+           },
+       .limits = {.participants = 2, .nodes = 3, .endpoints = 6}});
   const auto participant = [] { return *rc::gen::inRange<std::uint8_t>(1, 4); };
   const auto any_endpoint = [&](std::uint8_t p) {
     return guid_of(p, *rc::gen::inRange<std::uint8_t>(1, 4), *rc::gen::arbitrary<bool>());
@@ -701,9 +682,7 @@ RC_GTEST_PROP(Graph, WhatItTellsAddsUpToWhatItShows, ()) {
     const std::uint8_t p = participant();
     switch (*rc::gen::inRange(0, 5)) {
       case 0: {
-        ParticipantInfo info;
-        info.guid = guid_of(p, 0, false);
-        graph.apply(info);
+        graph.apply(ParticipantInfo{.guid = guid_of(p, 0, false)});
         break;
       }
       case 1:

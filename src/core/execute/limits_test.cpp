@@ -44,10 +44,7 @@ std::optional<Restraint> restraint(const std::optional<Limits::Limit>& limit) {
 
 TEST(Limits, LetALaunchSettleBeforeTheComponentOrWhatDependsOnItIsTouched) {
   Two two;
-  Limits::Options options;
-  options.quiet_after_launch = 1s;
-  options.quiet_downstream = 1s;
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.quiet_after_launch = 1s, .quiet_downstream = 1s});
   EXPECT_FALSE(limits.on(two.strategy("up_again"), kBegin));
   limits.note({kBegin, AdaptationDone{two.strategy("up_again"), 0, ""}});
   for (const char* quiet : {"up_again", "down_again", "down_tuned"}) {
@@ -60,10 +57,7 @@ TEST(Limits, LetALaunchSettleBeforeTheComponentOrWhatDependsOnItIsTouched) {
 
 TEST(Limits, LeaveWhatDependsOnALaunchAloneUntilItPublishesAgain) {
   Two two;
-  Limits::Options options;
-  options.quiet_after_launch = 1s;
-  options.quiet_downstream = 1s;
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.quiet_after_launch = 1s, .quiet_downstream = 1s});
   limits.note({kBegin, AdaptationDone{two.strategy("up_again"), 0, ""}});
   ComponentState& up = two.knowledge.components[ComponentId(0)];
   up.awaits_ends_until = kBegin + 10s;
@@ -80,10 +74,7 @@ TEST(Limits, LeaveWhatDependsOnALaunchAloneUntilItPublishesAgain) {
 // process first.
 TEST(Limits, LeaveWhatDependsOnWhatCameBackAloneUntilItIsFound) {
   Two two;
-  Limits::Options options;
-  options.quiet_after_launch = 1s;
-  options.quiet_downstream = 3s;
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.quiet_after_launch = 1s, .quiet_downstream = 3s});
   limits.note({kBegin, ComponentFound{ComponentId(0), 7}});
   EXPECT_FALSE(limits.on(two.strategy("down_again"), kBegin))
       << "it was only seen for the first time";
@@ -99,20 +90,14 @@ TEST(Limits, LeaveWhatDependsOnWhatCameBackAloneUntilItIsFound) {
 
 TEST(Limits, AreQuietOnlyAfterALaunch) {
   Two two;
-  Limits::Options options;
-  options.quiet_after_launch = 1s;
-  options.quiet_downstream = 1s;
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.quiet_after_launch = 1s, .quiet_downstream = 1s});
   limits.note({kBegin, AdaptationDone{two.strategy("down_tuned"), 0, ""}});
   EXPECT_FALSE(limits.on(two.strategy("down_again"), kBegin));
 }
 
 TEST(Limits, RememberTheLaunchOfAnEarlierProcess) {
   Two two;
-  Limits::Options options;
-  options.quiet_after_launch = 1s;
-  options.quiet_downstream = 1s;
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.quiet_after_launch = 1s, .quiet_downstream = 1s});
   limits.remember({{kBegin, AdaptationDone{two.strategy("up_again"), 0, ""}}});
   EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kBegin + 500ms)),
             Restraint::kQuietPeriod);
@@ -120,9 +105,7 @@ TEST(Limits, RememberTheLaunchOfAnEarlierProcess) {
 
 TEST(Limits, DoubleTheTimeBetweenRestarts) {
   Two two;
-  Limits::Options options;
-  options.backoff = {1s, 4s, 60s};
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.backoff = {1s, 4s, 60s}});
   const StrategyId again = two.strategy("up_again");
   Time now = kBegin;
   for (const Duration wait : {1s, 2s, 4s, 4s}) {
@@ -136,9 +119,7 @@ TEST(Limits, DoubleTheTimeBetweenRestarts) {
 
 TEST(Limits, ForgetTheRestartsOfWhatHasBeenWellSinceThen) {
   Two two;
-  Limits::Options options;
-  options.backoff = {100s, 400s, 60s};
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.backoff = {100s, 400s, 60s}});
   const StrategyId again = two.strategy("up_again");
   const RuleId rule = two.knowledge.rules[again].rule;
   limits.began(again, kBegin);
@@ -151,9 +132,7 @@ TEST(Limits, ForgetTheRestartsOfWhatHasBeenWellSinceThen) {
 
 TEST(Limits, BoundWhatIsBegunAtAComponentInItsPeriod) {
   Two two;
-  Limits::Options options;
-  options.per_component = {2, 60s};
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.per_component = {2, 60s}});
   limits.began(two.strategy("down_again"), kBegin);
   limits.began(two.strategy("down_tuned"), kBegin + 10s);
   EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kBegin + 59s)),
@@ -164,9 +143,7 @@ TEST(Limits, BoundWhatIsBegunAtAComponentInItsPeriod) {
 
 TEST(Limits, SayHowManyThereWere) {
   Two two;
-  Limits::Options options;
-  options.restarts = {1, 1h};
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.restarts = {1, 1h}});
   limits.began(two.strategy("down_again"), kBegin);
   EXPECT_EQ(limits.on(two.strategy("down_again"), kBegin)->reason,
             "1 restart of down in 1h, and no more are allowed");
@@ -174,10 +151,7 @@ TEST(Limits, SayHowManyThereWere) {
 
 TEST(Limits, BoundTheRestartsOfAComponentWhicheverRulesAsk) {
   Two two;
-  Limits::Options options;
-  options.restarts = {2, 1h};
-  options.backoff = {1s, 4s, 10s};
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.restarts = {2, 1h}, .backoff = {1s, 4s, 10s}});
   limits.began(two.strategy("down_again"), kBegin);
   limits.began(two.strategy("down_tuned"), kBegin + 1min);
   limits.began(two.strategy("both_again"), kBegin + 10min);
@@ -192,9 +166,7 @@ TEST(Limits, BoundTheRestartsOfAComponentWhicheverRulesAsk) {
 
 TEST(Limits, RememberTheRestartsOfEarlierProcesses) {
   Two two;
-  Limits::Options options;
-  options.restarts = {2, 1h};
-  Limits limits(two.knowledge, options);
+  Limits limits(two.knowledge, {.restarts = {2, 1h}});
   const StrategyId again = two.strategy("down_again");
   limits.remember(
       {{kBegin, StrategyChosen{again, {}, {}, false}}, {kBegin + 10min, StrategyResumed{again}}});

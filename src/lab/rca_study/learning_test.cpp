@@ -21,12 +21,11 @@ TEST(Calibration, ErrorIsTheMeanDistanceOfItsBins) {
 }
 
 LearningResult learned(bool has_drift, double forgetting) {
-  LearningCampaign campaign;
-  campaign.setting = {4, 1, 0, false};
-  campaign.faults = 120;
-  campaign.has_drift = has_drift;
-  campaign.forgetting = forgetting;
-  return *learn(campaign, nullptr);
+  return *learn({.setting = {4, 1, 0, false},
+                 .faults = 120,
+                 .forgetting = forgetting,
+                 .has_drift = has_drift},
+                nullptr);
 }
 
 TEST(Learning, ComesNearTheTruth) {
@@ -51,12 +50,11 @@ class LearningWith : public testing::TestWithParam<std::pair<bool, std::size_t>>
 TEST_P(LearningWith, FindsTheTrueRatesWhateverWasBelievedAtFirst) {
   const auto [uses_paper_planner, faults] = GetParam();
   for (const Priors priors : {Priors::kRight, Priors::kOff, Priors::kFlat}) {
-    LearningCampaign campaign;
-    campaign.setting = {4, faults, 0, false};
-    campaign.uses_paper_planner = uses_paper_planner;
-    campaign.faults = 300;
-    campaign.priors = priors;
-    const LearningResult result = *learn(campaign, nullptr);
+    const LearningResult result = *learn({.setting = {4, faults, 0, false},
+                                          .uses_paper_planner = uses_paper_planner,
+                                          .priors = priors,
+                                          .faults = 300},
+                                         nullptr);
     int judged = 0;
     for (const LearnedRate& rate : result.strategies) {
       if (rate.judged < 100) continue;
@@ -84,12 +82,11 @@ TEST_P(LearningWith, FindsHowSurelyAFailureGoesWithItsCause) {
   const auto [uses_paper_planner, faults] = GetParam();
   int coupled = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    LearningCampaign campaign;
-    campaign.setting = {4, faults, 0, false};
-    campaign.uses_paper_planner = uses_paper_planner;
-    campaign.faults = 200;
-    campaign.seed = seed;
-    const LearningResult result = *learn(campaign, nullptr);
+    const LearningResult result = *learn({.setting = {4, faults, 0, false},
+                                          .uses_paper_planner = uses_paper_planner,
+                                          .faults = 200,
+                                          .seed = seed},
+                                         nullptr);
     for (const LearnedCoupling& coupling : result.couplings) {
       const double truth = coupling.truth();
       if (std::min<double>(coupling.asked, coupling.counted) < 20) continue;

@@ -33,11 +33,8 @@ TEST(CampaignFold, TakesRunsInTheOrderOfTheCampaign) {
 }
 
 TEST(CampaignFold, PoolsReactionTimesOverTheRuns) {
-  RunMetrics many;
-  many.reactions_s = {1, 2, 3};
-  RunMetrics one;
-  one.reactions_s = {6};
-  const Row row = fold({many, {}, one});
+  RunMetrics many{.reactions_s = {1, 2, 3}};
+  const Row row = fold({many, {}, {.reactions_s = {6}}});
   EXPECT_EQ(row[Metric::kReaction].count(), 4);
   EXPECT_DOUBLE_EQ(row[Metric::kReaction].mean(), 3);
   EXPECT_EQ(row[Metric::kRatio].count(), 3);
@@ -54,9 +51,7 @@ TEST(CampaignFold, CountsTheRedeploymentsOfRunsThatAreLeftOut) {
   out.downtime_s = 100;
   out.unnecessary_redeployments = 3;
   out.honest.downtime_s = 7;
-  RunMetrics in;
-  in.unnecessary_redeployments = -1;
-  const Row row = fold({out, in});
+  const Row row = fold({out, {.unnecessary_redeployments = -1}});
   EXPECT_EQ(row.runs, 2);
   EXPECT_EQ(row[Metric::kRatio].count(), 1);
   EXPECT_EQ(row[Metric::kReaction].count(), 0);

@@ -41,10 +41,10 @@ struct RunMetrics {
   // redeployments of all.
   bool is_left_out = false;
   double ratio = 0;                            // f_resolved / s_executed
-  std::vector<double> reactions_s;             // of each failure that was resolved
+  std::vector<double> reactions_s{};           // of each failure that was resolved
   double downtime_s = 0;                       // gaps between outputs
   std::int32_t unnecessary_redeployments = 0;  // negative if a necessary one is missing
-  HonestMetrics honest;
+  HonestMetrics honest{};
 
   bool operator==(const RunMetrics&) const = default;
 };
