@@ -16,21 +16,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 // Two nodes of SUNSET, whose silence is a failure.
-constexpr const char* kCommandRules = R"(
-ROBOT two_cameras
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
-COMPONENT depth  NODE /managed_subsystem/depth  LAUNCH "sunset-node depth"
-RULE CameraGone
-  POLICIES ERROR
-  TRIGGER alive(camera) == false
-    STRATEGY camera_redeploy 90 10
-      ADAPTATION camera redeploy 5
-RULE DepthGone
-  POLICIES ERROR
-  TRIGGER alive(depth) == false
-    STRATEGY depth_redeploy 90 10
-      ADAPTATION depth redeploy 5
-)";
+const std::string kCommandRules =
+    "ROBOT two_cameras\n" + replaced_when_gone("camera") + replaced_when_gone("depth");
 
 struct Commands : testing::Test {
   TestProgram culprit(std::vector<std::string> arguments) {

@@ -13,7 +13,6 @@
 #include "base/live_clock.h"
 #include "base/text_file.h"
 #include "drill/injected.h"
-#include "json/json.h"
 #include "owners/proc.h"
 #include "terminal/test_program.h"
 
@@ -23,16 +22,9 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-constexpr const char* kDrillRules = R"(
-ROBOT two_sensors
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
-COMPONENT depth  NODE /managed_subsystem/depth  LAUNCH "sunset-node depth"
-RULE CameraGone
-  POLICIES ERROR
-  TRIGGER alive(camera) == false
-    STRATEGY camera_redeploy 50 2
-      ADAPTATION camera redeploy 5
-)";
+const std::string kDrillRules =
+    "ROBOT two_sensors\n" + replaced_when_gone("camera", "ERROR", "50 2") +
+    "COMPONENT depth NODE /managed_subsystem/depth LAUNCH \"sunset-node depth\"\n";
 
 // The culprits that drills of this domain started; a killed drill leaves one behind.
 std::vector<int> managers() {

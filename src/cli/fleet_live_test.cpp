@@ -19,15 +19,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kFleetMember = R"(
-ROBOT one_camera
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
-RULE CameraGone
-  POLICIES ERROR
-  TRIGGER alive(camera) == false
-    STRATEGY camera_redeploy 20 10
-      ADAPTATION camera redeploy 5
-)";
+const std::string kFleetMember =
+    "ROBOT one_camera\n" + replaced_when_gone("camera", "ERROR", "20 10");
 
 struct FleetOfPrograms : testing::Test {
   void SetUp() override {

@@ -18,21 +18,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kHandsRules = R"(
-ROBOT two_cameras
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
-COMPONENT depth  NODE /managed_subsystem/depth  LAUNCH "sunset-node depth"
-RULE CameraGone
-  POLICIES ERROR
-  TRIGGER alive(camera) == false
-    STRATEGY camera_redeploy 90 10
-      ADAPTATION camera redeploy 5
-RULE DepthGone
-  POLICIES WARNING
-  TRIGGER alive(depth) == false
-    STRATEGY depth_redeploy 90 10
-      ADAPTATION depth redeploy 5
-)";
+const std::string kHandsRules =
+    "ROBOT two_cameras\n" + replaced_when_gone("camera") + replaced_when_gone("depth", "WARNING");
 
 struct Hands : testing::Test {
   struct Ended {

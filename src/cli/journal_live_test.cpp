@@ -13,15 +13,7 @@ namespace {
 using testing::HasSubstr;
 
 // The camera takes its time to come up, and culprit can be killed during the restart.
-constexpr const char* kJournalRules = R"(
-ROBOT one_camera
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
-RULE CameraGone
-  POLICIES ERROR
-  TRIGGER alive(camera) == false
-    STRATEGY camera_redeploy 90 10
-      ADAPTATION camera redeploy 5
-)";
+const std::string kJournalRules = "ROBOT one_camera\n" + replaced_when_gone("camera");
 
 struct Journal : testing::Test {
   TestProgram culprit(std::vector<std::string> arguments) {
@@ -93,7 +85,7 @@ TEST_F(Journal, GoesOnWithRulesThatAreReloaded) {
   ASSERT_TRUE(run.prints("the rules are not reloaded")) << run.output();
   EXPECT_THAT(run.output(), HasSubstr("did you mean RULE?"));
 
-  world.write("one.rules", std::string(kJournalRules) + R"(
+  world.write("one.rules", kJournalRules + R"(
 RULE CameraStopped
   POLICIES WARNING
   TRIGGER age(/managed_subsystem/rgb_camera) > 1h

@@ -15,7 +15,6 @@
 
 #include "base/live_clock.h"
 #include "exemplars/sunset/node_process.h"
-#include "inbox/inbox.h"
 #include "journal/reader.h"
 #include "journal/standing_orders.h"
 #include "json/json.h"
@@ -373,20 +372,8 @@ TEST_F(TwoMachines, LookAfterTheirOwnSideOfACutAndStartNothingTwice) {
   const auto camera = run_node(TestNetwork::kRobot, "camera");
   const auto depth = run_node(TestNetwork::kDesk, "depth");
   // One failed strategy would exhaust them.
-  rules = R"(ROBOT robot
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
-COMPONENT depth NODE /managed_subsystem/depth LAUNCH "sunset-node depth"
-RULE CameraGone
-  POLICIES ERROR ATTEMPTS 1
-  TRIGGER alive(camera) == false
-    STRATEGY camera_redeploy 90 10
-      ADAPTATION camera redeploy 5
-RULE DepthGone
-  POLICIES ERROR ATTEMPTS 1
-  TRIGGER alive(depth) == false
-    STRATEGY depth_redeploy 90 10
-      ADAPTATION depth redeploy 5
-)";
+  rules = "ROBOT robot\n" + replaced_when_gone("camera", "ERROR ATTEMPTS 1") +
+          replaced_when_gone("depth", "ERROR ATTEMPTS 1");
   begin();
   for (TestProgram* each : {first.get(), second.get()}) {
     ASSERT_TRUE(each->prints("camera is there")) << each->output();

@@ -20,15 +20,7 @@ using ros_api::TestRosNode;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kRosApiRules = R"(
-ROBOT one_camera
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
-RULE CameraGone
-  POLICIES ERROR
-  TRIGGER alive(camera) == false
-    STRATEGY camera_redeploy 90 10
-      ADAPTATION camera redeploy 5
-)";
+const std::string kRosApiRules = "ROBOT one_camera\n" + replaced_when_gone("camera");
 
 constexpr const char* kStatusType = "culprit_msgs/msg/Status";
 constexpr const char* kPauseType = "culprit_msgs/srv/Pause";
@@ -113,7 +105,7 @@ TEST_F(RosApiLive, ObeysAnyoneIfItIsToldTo) {
             true);
   EXPECT_TRUE(later.wait_for_one([](const Json& status) { return status["is_paused"] == false; }));
   // Other rules are another session, at a node of the same name.
-  world.write("one.rules", std::string(kRosApiRules) + "COMPONENT lamp NODE /lamp\n");
+  world.write("one.rules", kRosApiRules + "COMPONENT lamp NODE /lamp\n");
   culprit->signal(SIGHUP);
   ASSERT_TRUE(culprit->prints("is reloaded")) << culprit->output();
   TestRosNode third(options());

@@ -10,7 +10,6 @@
 #include "base/environment.h"
 #include "base/live_clock.h"
 #include "exemplars/sunset/node_process.h"
-#include "inbox/inbox.h"
 #include "owners/mark.h"
 #include "ros2/options.h"
 #include "terminal/test_program.h"
@@ -22,16 +21,10 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kRules = R"(
-ROBOT start
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
-COMPONENT depth  NODE /managed_subsystem/depth  LAUNCH "sunset-node depth"
-RULE CameraGone
-  POLICIES ERROR
-  TRIGGER alive(camera) == false
-    STRATEGY camera_redeploy 90 10
-      ADAPTATION camera redeploy 5
-RULE CameraSilent
+const std::string kRules =
+    "ROBOT start\n" + replaced_when_gone("camera") +
+    "COMPONENT depth NODE /managed_subsystem/depth LAUNCH \"sunset-node depth\"\n" +
+    R"(RULE CameraSilent
   POLICIES WARNING
   TRIGGER rate(/managed_subsystem/rgb_camra) < 1
     STRATEGY camera_restart 90 10

@@ -1,5 +1,6 @@
 #include "terminal/test_program.h"
 
+#include <cctype>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -85,6 +86,16 @@ std::string TestProgram::output() const {
 
 bool TestProgram::prints(const std::string& text, Duration patience) const {
   return eventually([&] { return output().find(text) != std::string::npos; }, patience);
+}
+
+std::string replaced_when_gone(const std::string& node, const std::string& policies,
+                               const std::string& odds) {
+  std::string rule = node + "Gone";
+  rule[0] = static_cast<char>(std::toupper(rule[0]));
+  return "COMPONENT " + node + " NODE /managed_subsystem/" + node + " LAUNCH \"sunset-node " +
+         node + "\"\nRULE " + rule + "\n  POLICIES " + policies + "\n  TRIGGER alive(" + node +
+         ") == false\n    STRATEGY " + node + "_redeploy " + odds + "\n      ADAPTATION " + node +
+         " redeploy 5\n";
 }
 
 Holdings holdings_of(int pid) {

@@ -59,6 +59,11 @@ class TestProgram {
   std::optional<int> exit_;
 };
 
+// A component that is this node of SUNSET, and a rule that starts it again once it is gone: for the camera, CameraGone with
+// the strategy camera_redeploy. `odds`: of the strategy, as it has them.
+std::string replaced_when_gone(const std::string& node, const std::string& policies = "ERROR",
+                               const std::string& odds = "90 10");
+
 // The resources that a process holds.
 struct Holdings {
   std::size_t descriptors = 0;
