@@ -86,48 +86,46 @@ INSTANTIATE_TEST_SUITE_P(
 
 // ---- the robot
 
+void expect_met(const std::string& test, const std::string& more_rules = "") {
+  const Played played = play(test, more_rules);
+  EXPECT_TRUE(played.result.is_ok()) << test << played.text();
+}
+
 TEST(ScriptedRobot, FallsSilentWithWhatItNeeds) {
-  const Played played = play("AT 2s camera KILLED\nRUN 10s\nEXPECT FusionDead DETECTED\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
+  expect_met("AT 2s camera KILLED\nRUN 10s\nEXPECT FusionDead DETECTED\n");
 }
 
 TEST(ScriptedRobot, EndsOnlyTheStretchesThatHadBegunWhenItIsHealed) {
-  const Played played = play(
+  expect_met(
       "SIGNAL blur 2s: 0.9 8s: 0.8\nSTRATEGY focus HEALS blur\nRUN 7s\n"
       "EXPECT Blurred RESOLVED BY 4s\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
-  const Played again = play(
+  expect_met(
       "SIGNAL blur 2s: 0.9 8s: 0.8\nSTRATEGY focus HEALS blur\nRUN 12s\n"
       "EXPECT Blurred DETECTED AFTER 8s\nEXPECT Blurred RESOLVED AFTER 8s\n");
-  EXPECT_TRUE(again.result.is_ok()) << again.text();
 }
 
 TEST(ScriptedRobot, StaysSickIfNothingHealsIt) {
-  const Played played = play("SIGNAL blur 2s: 0.9\nRUN 10s\nEXPECT NOT Blurred RESOLVED\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
+  expect_met("SIGNAL blur 2s: 0.9\nRUN 10s\nEXPECT NOT Blurred RESOLVED\n");
 }
 
 TEST(ScriptedRobot, RefusesWhatItIsToldToRefuse) {
-  const Played played = play(
+  expect_met(
       "TOPIC /rgb 2s: silent\nADAPTATION camera restart REFUSED HEALS /rgb\n"
       "ADAPTATION camera redeploy HEALS /rgb AFTER 100ms\nRUN 10s\n"
       "EXPECT camera_restart FAILED BY 2.5s\nEXPECT NOT camera_restart EXECUTED\n"
       "EXPECT CameraDead RESOLVED WITH camera_redeploy\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 TEST(ScriptedRobot, TakesItsTime) {
-  const Played played = play(
+  expect_met(
       "AT 2s camera KILLED\nADAPTATION camera redeploy TAKES 4s\nRUN 10s\n"
       "EXPECT camera_redeploy EXECUTED AFTER 6s BY 6.3s\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 TEST(ScriptedRobot, AnswersNothingWhileItHangs) {
-  const Played played = play(
+  expect_met(
       "AT 2s camera HUNG\nRUN 20s\nEXPECT camera_restart FAILED\n"
       "EXPECT CameraDead RESOLVED WITH camera_redeploy\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 constexpr const char* kFusionGone =
@@ -137,31 +135,26 @@ constexpr const char* kFusionGone =
 TEST(ScriptedRobot, IsNotAliveWhileItHangsThoughItPublishesNothing) {
   const char* idle = "TOPIC /fused 0s: silent\n";
   for (const char* story : {"COMPONENT fusion HUNG\n", "AT 2s fusion HUNG\n"}) {
-    const Played played =
-        play(idle + std::string(story) +
-                 "RUN 10s\nEXPECT FusionGone RESOLVED WITH again BY 5s\nEXPECT fusion BLAMED\n",
-             kFusionGone);
-    EXPECT_TRUE(played.result.is_ok()) << played.text();
+    expect_met(idle + std::string(story) +
+                   "RUN 10s\nEXPECT FusionGone RESOLVED WITH again BY 5s\nEXPECT fusion BLAMED\n",
+               kFusionGone);
   }
 }
 
 TEST(ScriptedRobot, LeavesAComponentOutThatIsAbsentAndNobodyStartsIt) {
-  const Played played = play(
+  expect_met(
       "COMPONENT camera STATE absent\nRUN 20s\nEXPECT NOT CameraDead DETECTED\n"
       "EXPECT NO STRATEGY OF camera\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 TEST(ScriptedRobot, IsSilentWhileItIsInactive) {
-  const Played played = play(
+  expect_met(
       "AT 2s camera STATE inactive\nRUN 10s\nEXPECT CameraDead RESOLVED WITH camera_restart\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 TEST(ScriptedRobot, SurvivesComponentsThatNeedEachOther) {
-  const Played played = play(
+  expect_met(
       "COMPONENT camera NEEDS fusion\nAT 2s camera KILLED\nRUN 10s\nEXPECT FusionDead DETECTED\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 // ---- the governor, as culprit run has it
@@ -170,14 +163,12 @@ constexpr const char* kDocked = "SIGNAL docked DIAGNOSTIC base KEY docked\nINTER
 
 TEST(Runner, BeginsNothingWhileTheInterlockIsClosed) {
   for (const char* docked : {"SIGNAL docked 0s: false 5s: true\n", "SIGNAL docked 5s: true\n"}) {
-    const Played played =
-        play(std::string(docked) +
-                 "AT 2s camera KILLED\nRUN 10s\nEXPECT NO STRATEGY BY 4.9s\n"
-                 "EXPECT camera_redeploy EXCLUDED BECAUSE withheld ON camera BY 3s\n"
-                 "EXPECT camera_redeploy EXCLUDED\n"
-                 "EXPECT CameraDead RESOLVED WITH camera_redeploy AFTER 5s\n",
-             kDocked);
-    EXPECT_TRUE(played.result.is_ok()) << played.text();
+    expect_met(std::string(docked) +
+                   "AT 2s camera KILLED\nRUN 10s\nEXPECT NO STRATEGY BY 4.9s\n"
+                   "EXPECT camera_redeploy EXCLUDED BECAUSE withheld ON camera BY 3s\n"
+                   "EXPECT camera_redeploy EXCLUDED\n"
+                   "EXPECT CameraDead RESOLVED WITH camera_redeploy AFTER 5s\n",
+               kDocked);
   }
 }
 
@@ -187,11 +178,10 @@ TEST(Runner, SaysThatTheInterlockWithheldAStrategy) {
       "EXPECT camera_redeploy EXCLUDED BECAUSE tried\n",
       kDocked);
   EXPECT_THAT(played.instead(), ElementsAre(HasSubstr("INTERLOCK docked is false")));
-  const Played open = play(
+  expect_met(
       "SIGNAL docked 0s: true\nAT 2s camera KILLED\nRUN 10s\n"
       "EXPECT NOT camera_redeploy EXCLUDED BECAUSE withheld\n",
       kDocked);
-  EXPECT_TRUE(open.result.is_ok()) << open.text();
 }
 
 TEST(Runner, KeepsWithinTheBudgetOfAComponentWhateverFails) {
@@ -224,11 +214,10 @@ constexpr const char* kMapper =
     "    STRATEGY guess 90 10\n      ADAPTATION mapper redeploy 5\n";
 
 TEST(Runner, DoesNotReplaceAComponentThatIsHeardWhenAnotherIsSilent) {
-  const Played played = play(
+  expect_met(
       "COMPONENT mapper PUBLISHES /map\nTOPIC /map 0s: 10Hz\nTOPIC /rgb 2s: silent\nRUN 30s\n"
       "EXPECT guess EXCLUDED BECAUSE withheld ON mapper\nEXPECT NO STRATEGY OF mapper\n",
       kMapper);
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 // ---- values over a time
@@ -246,16 +235,14 @@ TEST(Runner, AWindowActsOnNothingUntilItIsCovered) {
            "SIGNAL joint EVERY 20ms 0s: 0.3 1s: silent 3s: 0.3\nRUN 4900ms\n",
            "SIGNAL joint EVERY 20ms 0s: 0.3 1900ms: nan 2s: 0.3\nRUN 3900ms\n",
        }) {
-    const Played played = play(std::string(course) + "EXPECT NOT Frozen DETECTED\n", kArm);
-    EXPECT_TRUE(played.result.is_ok()) << course << played.text();
+    expect_met(std::string(course) + "EXPECT NOT Frozen DETECTED\n", kArm);
   }
   for (const char* course : {
            "SIGNAL joint EVERY 20ms 0s: 0.3\nRUN 3s\nEXPECT Frozen DETECTED BY 2.1s\n",
            "SIGNAL joint EVERY 20ms 0s: 0.3 1s: silent 3s: 0.3\nRUN 6s\n"
            "EXPECT Frozen DETECTED AFTER 5s\n",
        }) {
-    const Played played = play(course, kArm);
-    EXPECT_TRUE(played.result.is_ok()) << course << played.text();
+    expect_met(course, kArm);
   }
 }
 
@@ -274,7 +261,7 @@ TEST(Runner, AValueThatIsNotANumberIsSeenByARuleForIt) {
 // ---- one publisher of several
 
 TEST(Runner, OneOfTwoPublishersIsSilent) {
-  const Played played = play(
+  expect_met(
       "COMPONENT front PUBLISHES /scan\nCOMPONENT rear PUBLISHES /scan\n"
       "TOPIC /scan FROM front 0s: 10Hz 7s: silent\nTOPIC /scan FROM rear 0s: 10Hz\n"
       "ADAPTATION front redeploy HEALS /scan\nRUN 20s\n"
@@ -287,26 +274,23 @@ TEST(Runner, OneOfTwoPublishersIsSilent) {
       "RULE RearSilent\n  POLICIES ERROR\n  TRIGGER age(/scan FROM rear) > 1s\n"
       "    STRATEGY rear_redeploy 90 10\n      ADAPTATION rear redeploy 25\n"
       "RULE AllSilent\n  POLICIES WARNING REPORT\n  TRIGGER age(/scan) > 1s\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 TEST(Runner, GoalsThatAreAborted) {
-  const Played played = play(
+  expect_met(
       "GOAL /go 20s..22s aborted\nGOAL /go 25s..30s aborted\nGOAL /go 31s\nRUN 1min\n"
       "EXPECT Aborted DETECTED AFTER 30s\nEXPECT Slow DETECTED AFTER 41s\n",
       "RULE Aborted\n  POLICIES WARNING REPORT\n  TRIGGER goals(/go, aborted, 15s) >= 2\n"
       "RULE Slow\n  POLICIES WARNING REPORT\n  TRIGGER goal_age(/go) > 10s\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 TEST(Runner, LinesOfALogAreCountedByTheirLevel) {
-  const Played played = play(
+  expect_met(
       "COMPONENT camera\nLOG camera WARN 1s..9s\nLOG camera ERROR 20s\nLOG camera FATAL 25s\nLOG "
       "camera ERROR "
       "40s..42s\nRUN 1min\nEXPECT Two DETECTED AFTER 25s\nEXPECT Many DETECTED AFTER 41s\n",
       "RULE Two\n  POLICIES WARNING REPORT\n  TRIGGER logs(camera, ERROR, 10s) >= 2\n"
       "RULE Many\n  POLICIES WARNING REPORT\n  TRIGGER logs(camera, ERROR, 10s) > 10\n");
-  EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
 // ---- the same again
