@@ -84,13 +84,10 @@ class TwoFaults {
         write(journal::kind::kEvent, journal::line_of(event, robot_->rules()));
       return true;
     };
-    robot_->discover();
-    robot_->run_for(8s);
+    robot_->discover(8s);
     robot_->order({1, "ada", "", Pause{}});
-    robot_->kill("camera");
-    robot_->run_for(5s);
-    robot_->kill("segmentation");
-    robot_->run_for(40s);
+    robot_->kill("camera", 5s);
+    robot_->kill("segmentation", 40s);
   }
 
   Ids of_manager() const {

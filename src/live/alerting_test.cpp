@@ -14,44 +14,23 @@ using alerts::Alert;
 using test::TestRobot;
 using testing::HasSubstr;
 
-constexpr const char* kAlertingRules = R"(
-ROBOT rover
-COMPONENT camera NODE /camera LAUNCH "camera" REQUIRED
-COMPONENT fusion NODE /fusion LAUNCH "fusion"
-COMPONENT lamp   NODE /lamp
-RULE CameraSilent
-  POLICIES ERROR ATTEMPTS 2
-  TRIGGER age(/rgb) > 300ms
-    STRATEGY redeploy_camera 90 10
-      ADAPTATION camera redeploy 20
-RULE FusionSilent
-  POLICIES WARNING
-  TRIGGER age(/fused) > 300ms
-    STRATEGY restart_fusion 90 10
-      ADAPTATION fusion restart 10
-RULE Dark
-  POLICIES NON_CRITICAL
-  TRIGGER brightness < 0.5
-    STRATEGY light 90 10
-      ADAPTATION lamp set_parameter on 1 2
-)";
+const std::string kAlertingRules =
+    test::rules_of_camera_and_lamp("ROBOT rover
+", "REQUIRED");
 
 struct Alerted {
-  explicit Alerted(Approval approval = Approval::kNone, const char* rules = kAlertingRules) {
+  explicit Alerted(Approval approval = Approval::kNone, const std::string& rules = kAlertingRules) {
     Manager::Options options;
     options.governor.approval = approval;
     robot.emplace(rules, std::make_unique<BayesPlanner>(), options);
-    robot->add("camera", {}, "/rgb");
-    robot->add("fusion", {"camera"}, "/fused");
-    robot->add("lamp").parameters["on"] = Value(std::int64_t{0});
+    test::add_camera_and_lamp(*robot);
     begin();
     robot->after_step = [this] {
       std::vector<Observation> none;
       alerting.stepped({robot->now, {}, none, {}, robot->manager().events()});
     };
     robot->discover();
-    robot->signal("brightness", Value(1.0));
-    robot->run_for(8s);
+    robot->signal("brightness", Value(1.0), 8s);
   }
   void begin() { alerting.begins(robot->manager(), {}, Time()); }
   // The manager is stepped when it wants to be, and when the alerting does.

@@ -17,34 +17,13 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr const char* kToldRules = R"(
-ROBOT rover
-COMPONENT camera NODE /camera LAUNCH "camera"
-COMPONENT fusion NODE /fusion LAUNCH "fusion"
-COMPONENT lamp   NODE /lamp
-RULE CameraSilent
-  POLICIES ERROR ATTEMPTS 2
-  TRIGGER age(/rgb) > 300ms
-    STRATEGY redeploy_camera 90 10
-      ADAPTATION camera redeploy 20
-RULE FusionSilent
-  POLICIES WARNING
-  TRIGGER age(/fused) > 300ms
-    STRATEGY restart_fusion 90 10
-      ADAPTATION fusion restart 10
-RULE Dark
-  POLICIES NON_CRITICAL
-  TRIGGER brightness < 0.5
-    STRATEGY light 90 10
-      ADAPTATION lamp set_parameter on 1 2
-)";
+const std::string kToldRules = test::rules_of_camera_and_lamp("ROBOT rover
+");
 
 struct ToldRobot {
   explicit ToldRobot(Manager::Options options = {}) {
     robot.emplace(kToldRules, std::make_unique<BayesPlanner>(), options);
-    robot->add("camera", {}, "/rgb");
-    robot->add("fusion", {"camera"}, "/fused");
-    robot->add("lamp").parameters["on"] = Value(std::int64_t{0});
+    test::add_camera_and_lamp(*robot);
     teller.begins(
         robot->manager(), [this] { return remarks; }, Time());
     robot->before_commands = [this](std::vector<Observation>& observations,
@@ -237,8 +216,8 @@ TEST(Teller, TellsAFewTimesASecondAtMost) {
   for (int i = 0; i < 500; ++i) {
     told.robot->tell(NodeAppeared{"/camera", 1000 + i});
     told.robot->tell(
-        ProcessSeen{told.robot->id("camera"), ProcessState::kGone, 1000 + i, "", Cause::kWish});
-    told.robot->run_for(2ms);
+        ProcessSeen{told.robot->id("camera"), ProcessState::kGone, 1000 + i, "", Cause::kWish},
+        2ms);
   }
   const double seconds_gone = seconds(told.robot->now - begin);
   EXPECT_LE(told.statuses.size(),

@@ -50,8 +50,7 @@ TEST_F(Counted, TellsOfFailuresStrategiesAndHealth) {
   EXPECT_THAT(metrics.text(), HasSubstr("culprit_failures_detected_total{rule=\"CameraSilent\","
                                         "criticality=\"ERROR\"} 0\n"))
       << "a rate needs a beginning";
-  robot.discover();
-  robot.run_for(6s);
+  robot.discover(6s);
   EXPECT_THAT(metrics.text(), HasSubstr("culprit_components{health=\"OK\"} 1\n"));
   robot.kill("camera");
   for (int i = 0; i < 100 && robot.manager().knowledge().states.active().empty(); ++i)
@@ -133,8 +132,7 @@ TEST_F(Counted, AreWhatTheDashboardAndTheAlertsAskFor) {
 TEST_F(Counted, TellsWhetherTheRobotIsHeard) {
   robot.discover();
   EXPECT_THAT(metrics.text(), HasSubstr("culprit_hears 1\n"));
-  robot.tell(HearingLost{"nothing comes back"});
-  robot.run_for(1s);
+  robot.tell(HearingLost{"nothing comes back"}, 1s);
   EXPECT_THAT(metrics.text(), HasSubstr("culprit_hears 0\n"));
 }
 
@@ -165,8 +163,7 @@ TEST_F(Counted, IsAliveAsLongAsTheLoopComesRoundWhenAskedTo) {
   Hub hub([this] { metrics.stepped(1ms, 0, robot.manager()); });
   EXPECT_EQ(ask(hub, 0).status, 200);
   EXPECT_EQ(ask(hub, 1).status, 503) << "the robot did not have its time yet";
-  robot.discover();
-  robot.run_for(10s);
+  robot.discover(10s);
   EXPECT_EQ(ask(hub, 1).status, 200);
   robot.tell(HearingLost{"nothing comes back"});
   EXPECT_EQ(ask(hub, 0).status, 503);

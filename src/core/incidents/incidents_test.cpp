@@ -13,28 +13,8 @@ using test::TestRobot;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr const char* kIncidentRules = R"(
-COMPONENT camera NODE /camera LAUNCH "camera"
-COMPONENT fusion NODE /fusion LAUNCH "fusion"
-COMPONENT lamp   NODE /lamp
-RULE CameraSilent
-  POLICIES ERROR ATTEMPTS 2
-  TRIGGER age(/rgb) > 300ms
-    STRATEGY redeploy_camera 90 10
-      ADAPTATION camera redeploy 20
-RULE FusionSilent
-  POLICIES WARNING
-  TRIGGER age(/fused) > 300ms
-    STRATEGY restart_fusion 90 10
-      ADAPTATION fusion restart 10
-RULE Dark
-  POLICIES NON_CRITICAL
-  TRIGGER brightness < 0.5
-    STRATEGY light 90 10
-      ADAPTATION lamp set_parameter on 1 2
-)";
+const std::string kIncidentRules = test::rules_of_camera_and_lamp();
 
-// A camera, what needs it, and a lamp that has nothing to do with either.
 struct Watched {
   explicit Watched(Approval approval = Approval::kNone, Autonomy autonomy = Autonomy::kAct,
                    const std::string& host_of_camera = "") {
@@ -42,13 +22,11 @@ struct Watched {
     options.governor.approval = approval;
     options.autonomy = autonomy;
     robot.emplace(kIncidentRules, std::make_unique<BayesPlanner>(), options);
-    robot->add("camera", {}, "/rgb").host = host_of_camera;
-    robot->add("fusion", {"camera"}, "/fused").hears = {};
-    robot->add("lamp").parameters["on"] = Value(std::int64_t{0});
+    test::add_camera_and_lamp(*robot);
+    (*robot)["camera"].host = host_of_camera;
     robot->after_step = [this] { note(); };
     robot->discover();
-    robot->signal("brightness", Value(1.0));
-    robot->run_for(8s);
+    robot->signal("brightness", Value(1.0), 8s);
   }
   const std::vector<Incident>& incidents() const { return robot->manager().incidents().open(); }
   Incidents::Course course(std::size_t place = 0) const {
@@ -77,10 +55,9 @@ TEST(Incidents, IsEmptyWhileAllIsWell) { EXPECT_TRUE(Watched().incidents().empty
 
 TEST(Incidents, IsOneIncidentForOneFaultWithWhatSuffersFromIt) {
   Watched watched;
-  watched.robot->kill("camera");
-  watched.robot->run_for(500ms);
+  watched.robot->kill("camera", 500ms);
   const auto incidents = watched.incidents();
-  ASSERT_EQ(incidents.size(), 1u) << transcript(*watched.robot);
+  ASSERT_EQ(incidents.size(), 1u);
   const Incident& incident = incidents[0];
   EXPECT_EQ(watched.robot->rules()[incident.root].name, "CameraSilent");
   EXPECT_THAT(watched.names(incident.consequences), testing::ElementsAre("FusionSilent"));
@@ -91,24 +68,22 @@ TEST(Incidents, IsOneIncidentForOneFaultWithWhatSuffersFromIt) {
   EXPECT_EQ(watched.course().doing, "being repaired: redeploy camera");
   EXPECT_FALSE(incident.needs_person());
   watched.robot->run_for(10s);
-  EXPECT_TRUE(watched.incidents().empty()) << transcript(*watched.robot);
+  EXPECT_TRUE(watched.incidents().empty());
 }
 
 TEST(Incidents, IsOneIncidentForAPersonWhereAComputerIsNotHeard) {
   Watched watched(Approval::kNone, Autonomy::kAct, "rover2");
-  watched.robot->cut("rover2");
-  watched.robot->run_for(60s);
+  watched.robot->cut("rover2", 60s);
   const auto incidents = watched.incidents();
-  ASSERT_EQ(incidents.size(), 1u) << transcript(*watched.robot);
+  ASSERT_EQ(incidents.size(), 1u);
   EXPECT_EQ(incidents[0].headline, "rover2, where camera ran, is unreachable");
   EXPECT_EQ(incidents[0].host, "rover2");
   EXPECT_EQ(incidents[0].components, std::vector{ComponentId(0)});
   EXPECT_EQ(incidents[0].consequences.size(), 1u);
   EXPECT_TRUE(incidents[0].needs_person());
   EXPECT_FALSE(incidents[0].is_exhausted);
-  watched.robot->mend("rover2");
-  watched.robot->run_for(5s);
-  EXPECT_TRUE(watched.incidents().empty()) << transcript(*watched.robot);
+  watched.robot->mend("rover2", 5s);
+  EXPECT_TRUE(watched.incidents().empty());
 }
 
 // A last resort makes the robot stand still; the component that does so is not the cause.
@@ -127,21 +102,18 @@ RULE LidarSilent
                   std::make_unique<BayesPlanner>(), Manager::Options{});
   robot.add("lidar", {}, "/scan");
   robot.add("base").parameters["stopped"] = Value(std::int64_t{0});
-  robot.discover();
-  robot.run_for(8s);
-  robot["lidar"].fault = "a person";
-  robot.run_for(2s);
-  ASSERT_EQ(robot["base"].parameters["stopped"], Value(std::int64_t{1})) << transcript(robot);
+  robot.discover(8s);
+  robot.fail("lidar", "a person", 2s);
+  ASSERT_EQ(robot["base"].parameters["stopped"], Value(std::int64_t{1}));
   const auto& open = robot.manager().incidents().open();
-  ASSERT_EQ(open.size(), 1u) << transcript(robot);
-  EXPECT_EQ(open[0].components, std::vector{ComponentId(0)}) << transcript(robot);
+  ASSERT_EQ(open.size(), 1u);
+  EXPECT_EQ(open[0].components, std::vector{ComponentId(0)});
   EXPECT_EQ(transcript(robot).find("base is held responsible"), std::string::npos);
 }
 
 TEST(Incidents, SaysWhatComesNextAndWhen) {
   Watched watched;
-  watched.robot->kill("camera");
-  watched.robot->run_for(500ms);
+  watched.robot->kill("camera", 500ms);
   EXPECT_EQ(watched.course().next, "redeploy_camera is being carried out");
   auto& camera = (*watched.robot)["camera"];
   camera.fault = "nothing helps";
@@ -152,7 +124,7 @@ TEST(Incidents, SaysWhatComesNextAndWhen) {
   watched.robot->run_for(2min);
   const auto incidents = watched.incidents();
   ASSERT_FALSE(incidents.empty());
-  EXPECT_TRUE(incidents[0].is_exhausted) << transcript(*watched.robot);
+  EXPECT_TRUE(incidents[0].is_exhausted);
   EXPECT_TRUE(incidents[0].needs_person());
   EXPECT_EQ(watched.course().doing, "nothing helped");
   EXPECT_EQ(watched.course().next, "nothing more is tried: a person must look");
@@ -162,10 +134,9 @@ TEST(Incidents, TellsTwoFaultsApartWorstFirst) {
   Watched watched;
   watched.robot->signal("brightness", Value(0.1));
   watched.robot->kill("camera");
-  watched.robot->order({1, "Ann", "", Pause{}});
-  watched.robot->run_for(1s);
+  watched.robot->order({1, "Ann", "", Pause{}}, 1s);
   const auto incidents = watched.incidents();
-  ASSERT_EQ(incidents.size(), 2u) << transcript(*watched.robot);
+  ASSERT_EQ(incidents.size(), 2u);
   EXPECT_EQ(incidents[0].headline, "camera is down");
   EXPECT_EQ(watched.course().doing, "nothing is done: culprit is paused");
   EXPECT_EQ(incidents[1].headline, "lamp is held responsible");
@@ -174,49 +145,41 @@ TEST(Incidents, TellsTwoFaultsApartWorstFirst) {
 TEST(Incidents, DoNotBlameAPauseThatIsOver) {
   Watched watched;
   watched.robot->kill("camera");
-  watched.robot->order({1, "Ann", "", Pause{}});
-  watched.robot->run_for(1s);
+  watched.robot->order({1, "Ann", "", Pause{}}, 1s);
   EXPECT_EQ(watched.course().doing, "nothing is done: culprit is paused");
   watched.robot->tell(HearingLost{"a test"});
-  watched.robot->order({2, "Ann", "", Resume{}});
-  watched.robot->run_for(1s);
-  EXPECT_THAT(watched.course().doing, HasSubstr("does not receive")) << transcript(*watched.robot);
+  watched.robot->order({2, "Ann", "", Resume{}}, 1s);
+  EXPECT_THAT(watched.course().doing, HasSubstr("does not receive"));
   EXPECT_THAT(watched.course().doing, testing::Not(HasSubstr("paused")));
 }
 
 TEST(Incidents, SaysThatItWaitsForAPerson) {
   Watched watched(Approval::kEach);
-  watched.robot->kill("camera");
-  watched.robot->run_for(1s);
+  watched.robot->kill("camera", 1s);
   const auto incidents = watched.incidents();
-  ASSERT_EQ(incidents.size(), 1u) << transcript(*watched.robot);
+  ASSERT_EQ(incidents.size(), 1u);
   EXPECT_TRUE(incidents[0].awaits_approval);
   EXPECT_EQ(watched.course().doing, "waits for approval: redeploy camera");
 }
 
 TEST(Incidents, SaysWhatWouldBeDoneInADryRun) {
   Watched watched(Approval::kNone, Autonomy::kAdvise);
-  watched.robot->kill("camera");
-  watched.robot->run_for(1s);
-  ASSERT_EQ(watched.incidents().size(), 1u) << transcript(*watched.robot);
+  watched.robot->kill("camera", 1s);
+  ASSERT_EQ(watched.incidents().size(), 1u);
   EXPECT_EQ(watched.course().doing, "would be repaired: redeploy camera");
 }
 
 TEST(Incidents, KeepTheirIdsUntilTheirEndsAndShareThemWithNone) {
   Watched watched;
-  watched.robot->kill("camera");
-  watched.robot->run_for(500ms);
+  watched.robot->kill("camera", 500ms);
   const std::string id = watched.incidents().at(0).id;
-  watched.robot->signal("brightness", Value(0.1));
-  watched.robot->run_for(200ms);
-  ASSERT_EQ(watched.incidents().size(), 2u) << transcript(*watched.robot);
+  watched.robot->signal("brightness", Value(0.1), 200ms);
+  ASSERT_EQ(watched.incidents().size(), 2u);
   EXPECT_EQ(watched.incidents()[0].id, id);
   EXPECT_NE(watched.incidents()[1].id, id);
-  watched.robot->signal("brightness", Value(1.0));
-  watched.robot->run_for(30s);
-  EXPECT_TRUE(watched.incidents().empty()) << transcript(*watched.robot);
-  watched.robot->kill("camera");
-  watched.robot->run_for(500ms);
+  watched.robot->signal("brightness", Value(1.0), 30s);
+  EXPECT_TRUE(watched.incidents().empty());
+  watched.robot->kill("camera", 500ms);
   EXPECT_NE(watched.incidents().at(0).id, id);
 }
 
@@ -227,10 +190,8 @@ TEST(Incidents, HaveTheSameIdsWhereverTheSameHappensToTheSameRun) {
     TestRobot robot(kIncidentRules, std::make_unique<BayesPlanner>(), options);
     robot.add("camera", {}, "/rgb");
     robot.discover();
-    robot.signal("brightness", Value(1.0));
-    robot.run_for(8s);
-    robot.kill("camera");
-    robot.run_for(500ms);
+    robot.signal("brightness", Value(1.0), 8s);
+    robot.kill("camera", 500ms);
     return robot.manager().incidents().open().at(0).id;
   };
   constexpr std::int64_t kNoon = 1'800'000'000'000'000'000;
@@ -246,36 +207,31 @@ TEST(Incidents, AreTheSameWhenTheirRootTurnsUpLater) {
   watched.robot->order({1, "Ann", "", Pause{}});
   (*watched.robot)["fusion"].fault = "nothing helps";
   watched.robot->run_for(1s);
-  ASSERT_EQ(watched.incidents().size(), 1u) << transcript(*watched.robot);
+  ASSERT_EQ(watched.incidents().size(), 1u);
   const std::string id = watched.incidents()[0].id;
-  watched.robot->kill("camera");
-  watched.robot->run_for(2s);
+  watched.robot->kill("camera", 2s);
   for (const Incident& each : watched.incidents()) {
     const bool has_fusion = each.has(RuleId(1));
     if (has_fusion) {
-      EXPECT_EQ(each.id, id) << transcript(*watched.robot);
+      EXPECT_EQ(each.id, id);
     }
   }
 }
 
 TEST(Incidents, AreOpenedAndClosedOnce) {
   Watched watched;
-  watched.robot->kill("camera");
-  watched.robot->run_for(30s);
-  EXPECT_THAT(watched.told, testing::ElementsAre("opened camera is down", "resolved CameraSilent"))
-      << transcript(*watched.robot);
+  watched.robot->kill("camera", 30s);
+  EXPECT_THAT(watched.told, testing::ElementsAre("opened camera is down", "resolved CameraSilent"));
 }
 
 // The two dead components of this course were one incident of the page.
 TEST(Incidents, AreTwoForTwoDeadComponentsWhileNothingIsDone) {
   Watched watched;
   watched.robot->order({1, "Ann", "", Pause{}});
-  watched.robot->kill("camera");
-  watched.robot->run_for(3s);
+  watched.robot->kill("camera", 3s);
   watched.robot->signal("brightness", Value(0.1));
-  watched.robot->kill("lamp");
-  watched.robot->run_for(3s);
-  ASSERT_EQ(watched.incidents().size(), 2u) << transcript(*watched.robot);
+  watched.robot->kill("lamp", 3s);
+  ASSERT_EQ(watched.incidents().size(), 2u);
   // Only a person can start the lamp.
   EXPECT_EQ(watched.incidents()[0].headline, "lamp is down");
   EXPECT_TRUE(watched.incidents()[0].needs_person());

@@ -42,8 +42,7 @@ TestRobot robot_with_box(const std::string& rules, bool is_run_as_recommended = 
   robot.add("tracker", {}, "/tracks");
   for (const std::string name : {"detector", "tracker"}) robot[name].pid = robot["box"].pid;
   robot.discover();
-  robot.tell(EndpointAppeared{"/tracker", EndpointKind::kPublisher, "/tracks"});
-  robot.run_for(6s);
+  robot.tell(EndpointAppeared{"/tracker", EndpointKind::kPublisher, "/tracks"}, 6s);
   return robot;
 }
 
@@ -54,10 +53,9 @@ void kill_all(TestRobot& robot, const std::vector<std::string>& order) {
 // As the program that starts the container does.
 void load_parts_when_it_is_up(TestRobot& robot, Duration load) {
   for (int i = 0; i < 500 && !robot.works("box"); ++i) robot.run_for(10ms);
-  ASSERT_TRUE(robot.works("box")) << transcript(robot);
+  ASSERT_TRUE(robot.works("box"));
   robot.run_for(load);
-  robot.start_by_hand("detector");
-  robot.run_for(load);
+  robot.start_by_hand("detector", load);
   robot.start_by_hand("tracker");
 }
 
@@ -72,15 +70,15 @@ TEST(AContainer, ThatIsKilledIsOneFaultAndOneRepair) {
         const Time killed = robot.now;
         kill_all(robot, order);
         load_parts_when_it_is_up(robot, load);
-        EXPECT_LT(robot.now - killed, 1s + 2 * load) << transcript(robot);
+        EXPECT_LT(robot.now - killed, 1s + 2 * load);
         robot.run_for(20s);
-        EXPECT_EQ(robot.count_asked("start process"), 1u) << transcript(robot);
-        EXPECT_FALSE(robot.was_asked("detector: stop")) << transcript(robot);
-        EXPECT_FALSE(robot.was_asked("tracker: stop")) << transcript(robot);
-        EXPECT_EQ(robot.count("is held responsible"), 1u) << transcript(robot);
-        EXPECT_EQ(robot.count("box is held responsible"), 1u) << transcript(robot);
-        EXPECT_EQ(robot.count("ADetectorGone cleared"), 1u) << transcript(robot);
-        EXPECT_EQ(robot.count("ZTrackerGone cleared"), 1u) << transcript(robot);
+        EXPECT_EQ(robot.count_asked("start process"), 1u);
+        EXPECT_FALSE(robot.was_asked("detector: stop"));
+        EXPECT_FALSE(robot.was_asked("tracker: stop"));
+        EXPECT_EQ(robot.count("is held responsible"), 1u);
+        EXPECT_EQ(robot.count("box is held responsible"), 1u);
+        EXPECT_EQ(robot.count("ADetectorGone cleared"), 1u);
+        EXPECT_EQ(robot.count("ZTrackerGone cleared"), 1u);
       }
     }
   }
@@ -91,7 +89,7 @@ TEST(AContainer, ThatNoRuleReplacesIsStartedForItsComponents) {
   TestRobot robot = robot_with_box(kPartsGone);
   kill_all(robot, {"box", "detector", "tracker"});
   robot.run_for(2s);
-  EXPECT_TRUE(robot.was_asked("detector: start process")) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("detector: start process"));
 }
 
 // It is up, and does not load what it had.
@@ -99,29 +97,26 @@ TEST(AContainer, ThatDoesNotLoadAComponentIsNotWaitedForForever) {
   TestRobot robot = robot_with_box(std::string(kPartsGone) + kBoxGone);
   kill_all(robot, {"box", "detector", "tracker"});
   for (int i = 0; i < 500 && !robot.works("box"); ++i) robot.run_for(10ms);
-  robot.start_by_hand("detector");
-  robot.run_for(kContainerLoads - 1s);
-  EXPECT_FALSE(robot.was_asked("tracker:")) << transcript(robot);
+  robot.start_by_hand("detector", kContainerLoads - 1s);
+  EXPECT_FALSE(robot.was_asked("tracker:"));
   robot.run_for(20s);
-  EXPECT_TRUE(robot.was_asked("tracker: start process")) << transcript(robot);
-  EXPECT_TRUE(robot.works("tracker")) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("tracker: start process"));
+  EXPECT_TRUE(robot.works("tracker"));
 }
 
 // One of its components alone says nothing of it.
 TEST(AContainer, ThatRunsIsNotHeldResponsibleForAComponentOfIt) {
   TestRobot robot = robot_with_box(std::string(kPartsGone) + kBoxGone);
   robot["detector"].is_in_graph = false;
-  robot.tell(NodeVanished{"/detector"});
-  robot.run_for(10s);
-  EXPECT_TRUE(robot.was_asked("detector: start process")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("box: stop process")) << transcript(robot);
+  robot.tell(NodeVanished{"/detector"}, 10s);
+  EXPECT_TRUE(robot.was_asked("detector: start process"));
+  EXPECT_FALSE(robot.was_asked("box: stop process"));
 }
 
 // As `ros2 component unload` does.
 void unload_by_hand(TestRobot& robot, const std::string& name) {
   robot[name].is_in_graph = false;
-  robot.tell(NodeVanished{"/" + name});
-  robot.run_for(600ms);
+  robot.tell(NodeVanished{"/" + name}, 600ms);
   robot.tell(Unloaded{robot.id(name)});
 }
 
@@ -129,13 +124,11 @@ TEST(AContainer, FromWhichAPersonUnloadedAComponentIsNotAskedToLoadIt) {
   TestRobot robot = robot_with_box(std::string(kPartsGone) + kBoxGone);
   unload_by_hand(robot, "detector");
   robot.run_for(1min);
-  EXPECT_FALSE(robot.was_asked("detector: st")) << transcript(robot);
-  EXPECT_EQ(robot.count("detector stays down: it was unloaded, and not by culprit"), 1u)
-      << transcript(robot);
-  robot.order({1, "ann", "", Revive{}});
-  robot.run_for(20s);
-  EXPECT_TRUE(robot.was_asked("detector: start process")) << transcript(robot);
-  EXPECT_TRUE(robot.works("detector")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("detector: st"));
+  EXPECT_EQ(robot.count("detector stays down: it was unloaded, and not by culprit"), 1u);
+  robot.order({1, "ann", "", Revive{}}, 20s);
+  EXPECT_TRUE(robot.was_asked("detector: start process"));
+  EXPECT_TRUE(robot.works("detector"));
 }
 
 TEST(AContainer, IntoWhichAPersonLoadsAComponentAgainIsAsAnyOther) {
@@ -143,13 +136,11 @@ TEST(AContainer, IntoWhichAPersonLoadsAComponentAgainIsAsAnyOther) {
   unload_by_hand(robot, "detector");
   robot.run_for(5s);
   robot["detector"].is_in_graph = true;
-  robot.tell(NodeAppeared{"/detector", robot["detector"].pid});
-  robot.run_for(Departures::kBack + 5s);
-  EXPECT_FALSE(robot.was_asked("detector: st")) << transcript(robot);
+  robot.tell(NodeAppeared{"/detector", robot["detector"].pid}, Departures::kBack + 5s);
+  EXPECT_FALSE(robot.was_asked("detector: st"));
   robot["detector"].is_in_graph = false;
-  robot.tell(NodeVanished{"/detector"});
-  robot.run_for(10s);
-  EXPECT_TRUE(robot.was_asked("detector: start process")) << transcript(robot);
+  robot.tell(NodeVanished{"/detector"}, 10s);
+  EXPECT_TRUE(robot.was_asked("detector: start process"));
 }
 
 // The component was of no launch any more.
@@ -159,15 +150,14 @@ TEST(AContainer, ThatAPersonEndedIsNotStartedForAComponentThatWasRevived) {
   for (const std::string name : {"box", "detector", "tracker"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher, false});
   unload_by_hand(robot, "detector");
-  robot.order({1, "ann", "", Revive{}});
-  robot.run_for(20s);
-  ASSERT_TRUE(robot.works("detector")) << transcript(robot);
+  robot.order({1, "ann", "", Revive{}}, 20s);
+  ASSERT_TRUE(robot.works("detector"));
   robot.asked.clear();
   for (const std::string name : {"detector", "tracker", "box"}) robot.leave(name);
   for (const std::string name : {"box", "tracker"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
   robot.run_for(1min);
-  EXPECT_FALSE(robot.was_asked("start process")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("start process"));
 }
 
 // It did not answer the request to unload a component. It was the last of its launch, which ends.
@@ -179,13 +169,12 @@ TEST(AContainer, ThatCulpritReplacesForAComponentWasNotEndedByAPerson) {
   robot["tracker"].fault = "redeploy";
   while (!robot.was_asked("tracker: stop process")) robot.run_for(10ms);
   robot.leave("box");
-  robot.leave("detector");
-  robot.run_for(300ms);
+  robot.leave("detector", 300ms);
   for (const std::string name : {"box", "detector", "tracker"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
   robot.run_for(1min);
-  EXPECT_EQ(robot.count("stay"), 0u) << transcript(robot);
-  EXPECT_TRUE(robot.works("box")) << transcript(robot);
+  EXPECT_EQ(robot.count("stay"), 0u);
+  EXPECT_TRUE(robot.works("box"));
 }
 
 }  // namespace

@@ -33,17 +33,15 @@ TEST_P(ExhaustedCause, LeavesItsEffectsToThePersonToo) {
         i == 0 ? std::vector<std::string>{} : std::vector{node(i - 1)};
     robot.add(node(i), needs, "/" + node(i));
   }
-  robot.discover();
-  robot.run_for(2s);
-  robot["c0"].fault = "a person";
-  robot.run_for(120s);
-  EXPECT_EQ(robot.count("Silent0 is exhausted"), 1u) << transcript(robot);
-  for (int i = 1; i < 5; ++i) EXPECT_FALSE(robot.was_asked(node(i) + ":")) << transcript(robot);
+  robot.discover(2s);
+  robot.fail("c0", "a person", 120s);
+  EXPECT_EQ(robot.count("Silent0 is exhausted"), 1u);
+  for (int i = 1; i < 5; ++i) EXPECT_FALSE(robot.was_asked(node(i) + ":"));
   EXPECT_EQ(robot.count("is exhausted"), 1u) << "once is enough";
   robot["c0"].fault.clear();
   robot.run_for(10s);
   EXPECT_TRUE(robot.works("c4"));
-  EXPECT_EQ(robot.count("cleared without a repair of its own"), 5u) << transcript(robot);
+  EXPECT_EQ(robot.count("cleared without a repair of its own"), 5u);
 }
 
 // An effect may have a fault of its own, which shows once the cause is repaired.
@@ -51,15 +49,13 @@ TEST_P(ExhaustedCause, LetsItsEffectsBeRepairedOnceItIsGone) {
   TestRobot robot(rule(0) + rule(1), GetParam()());
   robot.add("c0", {}, "/c0");
   robot.add("c1", {"c0"}, "/c1");
-  robot.discover();
-  robot.run_for(2s);
+  robot.discover(2s);
   robot["c0"].fault = "a person";
-  robot["c1"].fault = "redeploy";
-  robot.run_for(60s);
-  EXPECT_FALSE(robot.was_asked("c1:")) << transcript(robot);
+  robot.fail("c1", "redeploy", 60s);
+  EXPECT_FALSE(robot.was_asked("c1:"));
   robot["c0"].fault.clear();
   robot.run_for(30s);
-  EXPECT_TRUE(robot.works("c1")) << transcript(robot);
+  EXPECT_TRUE(robot.works("c1"));
 }
 
 // c1 can only be focused, which makes no sense while it is down. Rounds in which nothing could be
@@ -72,19 +68,17 @@ TEST_P(ExhaustedCause, IsNoFailureThatWaitsUntilItsComponentIsRepaired) {
             "80 10\nADAPTATION c1 set_parameter angle 1 2\n",
         GetParam()());
     robot.add("c1", {}, "/c1").parameters["angle"] = Value(std::int64_t{0});
-    robot.discover();
-    robot.run_for(2s);
+    robot.discover(2s);
     robot["c1"].dies_at_start = true;
     robot.kill("c1");
-    robot.signal("blur", Value(1.0));
-    robot.run_for(is_by_person ? 300s : 30s);
-    EXPECT_EQ(robot.count("Silent1 is exhausted"), is_by_person ? 1u : 0u) << transcript(robot);
-    EXPECT_EQ(robot.count("Blurred is exhausted"), 0u) << transcript(robot);
+    robot.signal("blur", Value(1.0), is_by_person ? 300s : 30s);
+    EXPECT_EQ(robot.count("Silent1 is exhausted"), is_by_person ? 1u : 0u);
+    EXPECT_EQ(robot.count("Blurred is exhausted"), 0u);
     EXPECT_FALSE(robot.was_asked("c1: set"));
     robot["c1"].dies_at_start = false;
     if (is_by_person) robot.start_by_hand("c1");
     robot.run_for(120s);
-    EXPECT_TRUE(robot.was_asked("c1: set")) << transcript(robot);
+    EXPECT_TRUE(robot.was_asked("c1: set"));
   }
 }
 
@@ -95,12 +89,10 @@ TEST_P(ExhaustedCause, IsAConsumerOfAnUnrepairedComponent) {
       "0.5\nSTRATEGY focus 80 10\nADAPTATION c1 set_parameter angle 1 2\n",
       GetParam()());
   robot.add("c1", {}, "/c1");
-  robot.discover();
-  robot.run_for(2s);
+  robot.discover(2s);
   robot.signal("blur", Value(1.0));
-  robot.kill("c1");
-  robot.run_for(120s);
-  EXPECT_EQ(robot.count("Blurred is exhausted"), 1u) << transcript(robot);
+  robot.kill("c1", 120s);
+  EXPECT_EQ(robot.count("Blurred is exhausted"), 1u);
 }
 
 // A bad value of c1, which one reconfiguration may mend.
@@ -114,18 +106,15 @@ TEST(Exhausted, LetsAReconfigurationBeTriedThatMadeNoSenseBefore) {
   robot.add("c0", {}, "/c0");
   robot.add("c1", {"c0"}, "/c1").parameters["angle"] = Value(std::int64_t{0});
   robot.discover();
-  robot.signal("is_tunable", Value(0.0));
-  robot.run_for(2s);
+  robot.signal("is_tunable", Value(0.0), 2s);
   robot.signal("blur", Value(1.0));
-  robot["c0"].fault = "a person";
-  robot.run_for(500ms);
-  ASSERT_EQ(robot.count("Blurred waits: focus is not possible now"), 1u) << transcript(robot);
-  robot.signal("is_tunable", Value(1.0));
-  robot.run_for(1500ms);
-  ASSERT_FALSE(robot.was_asked("c1: set angle")) << transcript(robot);
+  robot.fail("c0", "a person", 500ms);
+  ASSERT_EQ(robot.count("Blurred waits: focus is not possible now"), 1u);
+  robot.signal("is_tunable", Value(1.0), 1500ms);
+  ASSERT_FALSE(robot.was_asked("c1: set angle"));
   robot.run_for(120s);
-  ASSERT_EQ(robot.count("Silent0 is exhausted"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("c1: set angle to 1"), 1u) << transcript(robot);
+  ASSERT_EQ(robot.count("Silent0 is exhausted"), 1u);
+  EXPECT_EQ(robot.count_asked("c1: set angle to 1"), 1u);
 }
 
 // Yielding to a failure that awaits a human would block this one silently.
@@ -136,14 +125,11 @@ TEST(Exhausted, WhatWaitsForAPersonHoldsUpNoLesserFailure) {
   robot.add("c2", {"c0", "c1"}, "/c2");
   robot.discover();
   robot.signal("is_tunable", Value(1.0));
-  robot.signal("blur", Value(0.0));
-  robot.run_for(2s);
-  robot["c0"].fault = "a person";
-  robot.run_for(60s);
-  ASSERT_EQ(robot.count("Silent0 is exhausted"), 1u) << transcript(robot);
-  robot.signal("blur", Value(1.0));
-  robot.run_for(5s);
-  EXPECT_TRUE(robot.was_asked("c1: set angle to 1")) << transcript(robot);
+  robot.signal("blur", Value(0.0), 2s);
+  robot.fail("c0", "a person", 60s);
+  ASSERT_EQ(robot.count("Silent0 is exhausted"), 1u);
+  robot.signal("blur", Value(1.0), 5s);
+  EXPECT_TRUE(robot.was_asked("c1: set angle to 1"));
 }
 
 // A feedback loop of three, one of which dies and does not come up again.
@@ -152,13 +138,11 @@ TEST(Exhausted, LeavesTheCircleOfWhatIsDeadToThePersonToo) {
   robot.add("c0", {"c2"}, "/c0").dies_at_start = true;
   robot.add("c1", {"c0"}, "/c1");
   robot.add("c2", {"c1"}, "/c2");
-  robot.discover();
-  robot.run_for(2s);
-  robot.kill("c0");
-  robot.run_for(240s);
-  EXPECT_EQ(robot.count("Silent0 is exhausted"), 1u) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("c1:")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("c2:")) << transcript(robot);
+  robot.discover(2s);
+  robot.kill("c0", 240s);
+  EXPECT_EQ(robot.count("Silent0 is exhausted"), 1u);
+  EXPECT_FALSE(robot.was_asked("c1:"));
+  EXPECT_FALSE(robot.was_asked("c2:"));
 }
 
 // The robot stops at once when no strategy is left for the camera.
@@ -171,12 +155,10 @@ TEST_P(ExhaustedCause, MakesTheRobotStopSafely) {
                   GetParam()());
   robot.add("c0", {}, "/c0");
   robot.add("drive", {"c0"}, "/drive").parameters["speed"] = Value(std::int64_t{1});
-  robot.discover();
-  robot.run_for(2s);
-  robot["c0"].fault = "a person";
-  robot.run_for(60s);
-  EXPECT_EQ(robot["drive"].parameters["speed"], Value(std::int64_t{0})) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("drive: deactivate")) << transcript(robot);
+  robot.discover(2s);
+  robot.fail("c0", "a person", 60s);
+  EXPECT_EQ(robot["drive"].parameters["speed"], Value(std::int64_t{0}));
+  EXPECT_FALSE(robot.was_asked("drive: deactivate"));
 }
 
 }  // namespace

@@ -46,14 +46,13 @@ RULE Blurred
   robot["camera"].fault = "restart";
   robot.signal("blur", Value(1.0));
   for (int ms = 0; ms < 2000 && !robot.was_asked("camera: deactivate"); ++ms) robot.run_for(1ms);
-  EXPECT_TRUE(robot.was_asked("camera: deactivate")) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("camera: deactivate"));
   give_order(robot, Pause{});
   live_with_blur(robot, 40s);
-  EXPECT_FALSE(has_active_camera(robot))
-      << "nothing is undone while it is paused" << transcript(robot);
+  EXPECT_FALSE(has_active_camera(robot)) << "nothing is undone while it is paused";
   EXPECT_TRUE(std::ranges::any_of(robot.events, [](const Event& event) {
     return std::holds_alternative<FailureLost>(event.what);
-  })) << transcript(robot);
+  }));
   return robot;
 }
 
@@ -61,9 +60,9 @@ TEST(GivingBack, ActivatesAfterAPauseWhatAnInterruptedRestartLeftInactive) {
   TestRobot robot = paused_in_restart();
   give_order(robot, Resume{});
   live_with_blur(robot, 5s);
-  EXPECT_TRUE(has_active_camera(robot)) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: activate"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: deactivate"), 1u) << transcript(robot);
+  EXPECT_TRUE(has_active_camera(robot));
+  EXPECT_EQ(robot.count_asked("camera: activate"), 1u);
+  EXPECT_EQ(robot.count_asked("camera: deactivate"), 1u);
   EXPECT_FALSE(robot.manager().knowledge().components[kBlurredCamera].is_to_be_given_back());
 }
 
@@ -76,7 +75,7 @@ TEST(GivingBack, IsUpToTheNextCulprit) {
   robot.replace_manager(std::move(next));
   robot.signal("speed", Value(0.0));
   live_with_blur(robot, 20s);
-  EXPECT_TRUE(has_active_camera(robot)) << transcript(robot);
+  EXPECT_TRUE(has_active_camera(robot));
 }
 
 TEST(GivingBack, WaitsForAnInterlock) {
@@ -84,10 +83,10 @@ TEST(GivingBack, WaitsForAnInterlock) {
   robot.signal("speed", Value(1.0));
   give_order(robot, Resume{});
   live_with_blur(robot, 20s);
-  EXPECT_FALSE(has_active_camera(robot)) << transcript(robot);
+  EXPECT_FALSE(has_active_camera(robot));
   robot.signal("speed", Value(0.0));
   live_with_blur(robot, 5s);
-  EXPECT_TRUE(has_active_camera(robot)) << transcript(robot);
+  EXPECT_TRUE(has_active_camera(robot));
 }
 
 TEST(GivingBack, LeavesAMutedComponentAlone) {
@@ -95,7 +94,7 @@ TEST(GivingBack, LeavesAMutedComponentAlone) {
   give_order(robot, Silence{kBlurredCamera, 60s});
   give_order(robot, Resume{});
   live_with_blur(robot, 30s);
-  EXPECT_FALSE(has_active_camera(robot)) << transcript(robot);
+  EXPECT_FALSE(has_active_camera(robot));
 }
 
 // A person, or another program, has changed it since: that stands.
@@ -104,12 +103,11 @@ TEST(GivingBack, LeavesAloneWhatSomethingElseHasChanged) {
   for (const Lifecycle state :
        {Lifecycle::kActive, Lifecycle::kUnconfigured, Lifecycle::kInactive}) {
     robot["camera"].state = state;
-    robot.tell(LifecycleRead{kBlurredCamera, state});
-    robot.run_for(100ms);
+    robot.tell(LifecycleRead{kBlurredCamera, state}, 100ms);
   }
   give_order(robot, Resume{});
   live_with_blur(robot, 30s);
-  EXPECT_FALSE(has_active_camera(robot)) << transcript(robot);
+  EXPECT_FALSE(has_active_camera(robot));
 }
 
 // The camera is too hot during the pause. It is not switched on again when it has cooled down.
@@ -121,14 +119,13 @@ RULE Hot
     STRATEGY off 100 10 LASTRESORT
       ADAPTATION camera deactivate 1
 )");
-  robot.signal("heat", Value(95.0));
-  robot.run_for(1s);
+  robot.signal("heat", Value(95.0), 1s);
   give_order(robot, Resume{});
   live_with_blur(robot, 5s);
-  EXPECT_EQ(robot.count("off took effect"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("off took effect"), 1u);
   robot.signal("heat", Value(20.0));
   live_with_blur(robot, 30s);
-  EXPECT_FALSE(has_active_camera(robot)) << transcript(robot);
+  EXPECT_FALSE(has_active_camera(robot));
 }
 
 // It was deactivated while its driver is replaced, and the driver is dead. The next culprit does not see that at once.
@@ -146,12 +143,10 @@ RULE Silent
 )");
   robot.add("planner");
   robot.add("driver", {}, "/joints");
-  robot.discover();
-  robot.run_for(7s);
+  robot.discover(7s);
   robot["driver"].dies_at_start = true;
-  robot.kill("driver");
-  robot.run_for(10s);
-  ASSERT_EQ(robot["planner"].state, Lifecycle::kInactive) << transcript(robot);
+  robot.kill("driver", 10s);
+  ASSERT_EQ(robot["planner"].state, Lifecycle::kInactive);
   Manager::Options options;
   options.start = robot.now;
   auto next = std::make_unique<Manager>(robot.rules(), std::make_unique<BayesPlanner>(), options);
@@ -159,7 +154,7 @@ RULE Silent
   next->remember(robot.manager().knowledge().known_robot());
   robot.replace_manager(std::move(next));
   robot.run_for(60s);
-  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("planner: activate"));
 }
 
 TEST(GivingBack, IsTriedMoreAndMoreRarely) {
@@ -167,11 +162,11 @@ TEST(GivingBack, IsTriedMoreAndMoreRarely) {
   robot["camera"].refuses = true;
   give_order(robot, Resume{});
   live_with_blur(robot, 70s);
-  EXPECT_GE(robot.count_asked("camera: activate"), 2u) << transcript(robot);
-  EXPECT_LE(robot.count_asked("camera: activate"), 4u) << transcript(robot);
+  EXPECT_GE(robot.count_asked("camera: activate"), 2u);
+  EXPECT_LE(robot.count_asked("camera: activate"), 4u);
   robot["camera"].refuses = false;
   live_with_blur(robot, 90s);
-  EXPECT_TRUE(has_active_camera(robot)) << transcript(robot);
+  EXPECT_TRUE(has_active_camera(robot));
 }
 
 }  // namespace

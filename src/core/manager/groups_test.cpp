@@ -36,8 +36,7 @@ TestRobot robot_with_group(const std::string& rules) {
   for (const char* name : {"planner", "controller", "navigator"})
     robot.add(name).state_at_start = Lifecycle::kUnconfigured;
   robot.add("manager").has_lifecycle = false;
-  robot.discover();
-  robot.run_for(10s);
+  robot.discover(10s);
   return robot;
 }
 
@@ -63,7 +62,7 @@ std::size_t place_asked(const TestRobot& robot, const std::string& what) {
 TEST(Groups, OneThatIsWellIsLeftAlone) {
   TestRobot robot = robot_with_group(rules_of_group());
   robot.run_for(60s);
-  EXPECT_EQ(robot.count("HalfUp"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("HalfUp"), 0u);
 }
 
 TEST(Groups, OneThatIsHalfUpIsDrivenUpInItsOrderAndItsManagerBegunAnew) {
@@ -71,14 +70,14 @@ TEST(Groups, OneThatIsHalfUpIsDrivenUpInItsOrderAndItsManagerBegunAnew) {
   put(robot, "controller", Lifecycle::kUnconfigured);
   put(robot, "navigator", Lifecycle::kInactive);
   robot.run_for(12s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  EXPECT_TRUE(are_active(robot));
+  EXPECT_FALSE(robot.was_asked("planner: activate"));
   EXPECT_LT(place_asked(robot, "controller: configure"),
             place_asked(robot, "controller: activate"));
   EXPECT_LT(place_asked(robot, "controller: activate"), place_asked(robot, "navigator: activate"));
   EXPECT_LT(place_asked(robot, "navigator: activate"),
             place_asked(robot, "manager: start process"));
-  EXPECT_EQ(robot.count("HalfUp resolved by start_navigation"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("HalfUp resolved by start_navigation"), 1u);
 }
 
 TEST(Groups, OfAGroupThatIsHalfUpTheFirstMemberThatIsNotUpIsBlamed) {
@@ -90,7 +89,7 @@ TEST(Groups, OfAGroupThatIsHalfUpTheFirstMemberThatIsNotUpIsBlamed) {
     if (const auto* chosen = std::get_if<StrategyChosen>(&event.what))
       blamed.push_back(chosen->suspects.front().component);
   }
-  EXPECT_EQ(blamed, std::vector{robot.id("navigator")}) << transcript(robot);
+  EXPECT_EQ(blamed, std::vector{robot.id("navigator")});
 }
 
 TEST(Groups, AManagerThatResetsIsBusyAndLeftAlone) {
@@ -104,7 +103,7 @@ TEST(Groups, AManagerThatResetsIsBusyAndLeftAlone) {
     }
   }
   robot.run_for(30s);
-  EXPECT_EQ(robot.count("HalfUp"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("HalfUp"), 0u);
 }
 
 TEST(Groups, OneThatAPersonPausedStaysPaused) {
@@ -112,7 +111,7 @@ TEST(Groups, OneThatAPersonPausedStaysPaused) {
   for (const char* name : {"navigator", "controller", "planner"})
     put(robot, name, Lifecycle::kInactive);
   robot.run_for(60s);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
 }
 
 TEST(Groups, AMemberThatDiesDuringAPauseIsReplacedAndThePauseLasts) {
@@ -120,14 +119,13 @@ TEST(Groups, AMemberThatDiesDuringAPauseIsReplacedAndThePauseLasts) {
   for (const char* name : {"navigator", "controller", "planner"})
     put(robot, name, Lifecycle::kInactive);
   robot.run_for(10s);
-  robot.kill("planner");
-  robot.run_for(60s);
-  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("controller: ")) << transcript(robot);
+  robot.kill("planner", 60s);
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u);
+  EXPECT_FALSE(robot.was_asked("controller: "));
   // The pause ends, and the manager cannot activate the new one.
   for (const char* name : {"controller", "navigator"}) put(robot, name, Lifecycle::kActive);
   robot.run_for(15s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_TRUE(are_active(robot));
 }
 
 TEST(Groups, AMemberThatDiedIsStarted) {
@@ -135,8 +133,8 @@ TEST(Groups, AMemberThatDiedIsStarted) {
   robot.kill("planner");
   put(robot, "navigator", Lifecycle::kInactive);
   robot.run_for(20s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
+  EXPECT_TRUE(are_active(robot));
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u);
 }
 
 TEST(Groups, AMemberThatHangsIsReplaced) {
@@ -144,8 +142,8 @@ TEST(Groups, AMemberThatHangsIsReplaced) {
   robot.stop("controller");
   put(robot, "navigator", Lifecycle::kInactive);
   robot.run_for(40s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("controller: start"), 1u) << transcript(robot);
+  EXPECT_TRUE(are_active(robot));
+  EXPECT_EQ(robot.count_asked("controller: start"), 1u);
 }
 
 // Another of its threads still works, so that its topics come and it is not found to hang.
@@ -159,24 +157,23 @@ TEST(Groups, AMemberThatHangsUnnoticedIsReplacedAsAPartOfTheRepair) {
   hang_unnoticed(robot, "controller");
   put(robot, "navigator", Lifecycle::kInactive);
   robot.run_for(20s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("controller: start"), 1u) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("planner: start")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("navigator: start")) << transcript(robot);
-  EXPECT_EQ(robot.count("HalfUp resolved by start_navigation"), 1u) << transcript(robot);
+  EXPECT_TRUE(are_active(robot));
+  EXPECT_EQ(robot.count_asked("controller: start"), 1u);
+  EXPECT_FALSE(robot.was_asked("planner: start"));
+  EXPECT_FALSE(robot.was_asked("navigator: start"));
+  EXPECT_EQ(robot.count("HalfUp resolved by start_navigation"), 1u);
 }
 
 TEST(Groups, AMemberThatIsBusyInATransitionIsNotReplaced) {
   TestRobot robot = robot_with_group(rules_of_group());
   hang_unnoticed(robot, "controller");
   put(robot, "navigator", Lifecycle::kInactive);
-  robot.tell(LifecycleRead{robot.id("controller"), Lifecycle::kTransition});
-  robot.run_for(8s);
+  robot.tell(LifecycleRead{robot.id("controller"), Lifecycle::kTransition}, 8s);
   robot["controller"].answers = true;
   put(robot, "controller", Lifecycle::kActive);
   robot.run_for(20s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("controller: start")) << transcript(robot);
+  EXPECT_TRUE(are_active(robot));
+  EXPECT_FALSE(robot.was_asked("controller: start"));
 }
 
 TEST(Groups, AMemberThatNeverAnsweredIsNotTakenForHung) {
@@ -184,24 +181,23 @@ TEST(Groups, AMemberThatNeverAnsweredIsNotTakenForHung) {
   robot["controller"].answers = false;
   put(robot, "navigator", Lifecycle::kInactive);
   robot.run_for(20s);
-  EXPECT_FALSE(robot.was_asked("controller: stop")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("controller: start")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("controller: stop"));
+  EXPECT_FALSE(robot.was_asked("controller: start"));
 }
 
 TEST(Groups, WithoutACommandADeadMemberIsLeftToAPerson) {
   TestRobot robot = robot_with_group(rules_of_group("", ""));
-  robot.kill("planner");
-  robot.run_for(5min);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  EXPECT_GE(robot.count("HalfUp"), 1u) << transcript(robot);
+  robot.kill("planner", 5min);
+  EXPECT_TRUE(robot.asked.empty());
+  EXPECT_GE(robot.count("HalfUp"), 1u);
 }
 
 TEST(Groups, OneWhoseManagerCannotBeStartedIsDrivenUpAllTheSame) {
   TestRobot robot = robot_with_group(rules_of_group("", ""));
   put(robot, "controller", Lifecycle::kInactive);
   robot.run_for(20s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("manager: ")) << transcript(robot);
+  EXPECT_TRUE(are_active(robot));
+  EXPECT_FALSE(robot.was_asked("manager: "));
 }
 
 TEST(Groups, AMemberThatRefusesIsReportedAndTheOthersStayUp) {
@@ -210,10 +206,10 @@ TEST(Groups, AMemberThatRefusesIsReportedAndTheOthersStayUp) {
   put(robot, "controller", Lifecycle::kInactive);
   put(robot, "navigator", Lifecycle::kInactive);
   robot.run_for(10min);
-  EXPECT_TRUE(is_active(robot, "controller")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("controller: deactivate")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("manager: ")) << transcript(robot);
-  EXPECT_GE(robot.count("it refused to activate"), 1u) << transcript(robot);
+  EXPECT_TRUE(is_active(robot, "controller"));
+  EXPECT_FALSE(robot.was_asked("controller: deactivate"));
+  EXPECT_FALSE(robot.was_asked("manager: "));
+  EXPECT_GE(robot.count("it refused to activate"), 1u);
 }
 
 TEST(Groups, WhatSomebodyDeactivatesMeanwhileIsNotActivatedAgain) {
@@ -230,9 +226,9 @@ TEST(Groups, WhatSomebodyDeactivatesMeanwhileIsNotActivatedAgain) {
     put(robot, "navigator", Lifecycle::kInactive);
   };
   robot.run_for(14s);
-  EXPECT_TRUE(has_paused) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("planner: activate"), 1u) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("manager: ")) << transcript(robot);
+  EXPECT_TRUE(has_paused);
+  EXPECT_EQ(robot.count_asked("planner: activate"), 1u);
+  EXPECT_FALSE(robot.was_asked("manager: "));
 }
 
 TEST(Groups, NothingIsDoneWhileCulpritIsPaused) {
@@ -240,18 +236,16 @@ TEST(Groups, NothingIsDoneWhileCulpritIsPaused) {
   robot.order({1, "a person", "", Pause{}});
   put(robot, "controller", Lifecycle::kInactive);
   robot.run_for(60s);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  robot.order({2, "a person", "", Resume{}});
-  robot.run_for(10s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
+  robot.order({2, "a person", "", Resume{}}, 10s);
+  EXPECT_TRUE(are_active(robot));
 }
 
 TEST(Groups, AMemberThatAPersonShutDownStaysDown) {
   TestRobot robot = robot_with_group(rules_of_group());
   robot["planner"].state = Lifecycle::kFinalized;
-  robot.tell(LifecycleRead{robot.id("planner"), Lifecycle::kFinalized, true});
-  robot.run_for(60s);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot.tell(LifecycleRead{robot.id("planner"), Lifecycle::kFinalized, true}, 60s);
+  EXPECT_TRUE(robot.asked.empty());
 }
 
 TEST(Groups, ACulpritThatIsKilledMeanwhileLeavesNothingThatTheNextOneCannotFinish) {
@@ -263,28 +257,27 @@ TEST(Groups, ACulpritThatIsKilledMeanwhileLeavesNothingThatTheNextOneCannotFinis
         commands, [&](const Command& each) { return each.component == robot.id("navigator"); });
   };
   robot.run_for(9s);
-  ASSERT_TRUE(is_active(robot, "controller")) << transcript(robot);
+  ASSERT_TRUE(is_active(robot, "controller"));
   robot.before_commands = nullptr;
   robot.replace_manager(std::make_unique<Manager>(robot.rules(), std::make_unique<BayesPlanner>(),
                                                   Manager::Options{.start = robot.now}));
   robot.run_for(20s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_TRUE(are_active(robot));
 }
 
 // It is there again at once, and the manager has stopped at it: the failure is over when the group is up.
 TEST(Groups, AMemberIsWellOnceItsGroupIs) {
   TestRobot robot = robot_with_group(rules_of_group(gone_rule("planner")));
-  robot.kill("planner");
-  robot.run_for(4s);
-  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("planner_gone") - robot.count("planner_again"), 1u) << transcript(robot);
+  robot.kill("planner", 4s);
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u);
+  EXPECT_EQ(robot.count("planner_gone") - robot.count("planner_again"), 1u);
   put(robot, "navigator", Lifecycle::kInactive);
   robot.run_for(3s);
-  EXPECT_EQ(robot.count("resolved"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("resolved"), 0u);
   robot.run_for(10s);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
-  EXPECT_GE(robot.count("resolved"), 2u) << transcript(robot);
+  EXPECT_TRUE(are_active(robot));
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u);
+  EXPECT_GE(robot.count("resolved"), 2u);
 }
 
 // The others depend on it, so that it explains why the group is half up. It is over only with the group.
@@ -292,27 +285,25 @@ TEST(Groups, AMemberThatHungDoesNotHoldUpWhatBringsUpItsGroup) {
   TestRobot robot = robot_with_group(rules_of_group(gone_rule("controller") +
                                                     "DEPENDENCY navigator ON controller planner\n"
                                                     "DEPENDENCY planner ON controller\n"));
-  robot.stop("controller");
-  robot.run_for(5s);
+  robot.stop("controller", 5s);
   for (const char* name : {"navigator", "planner"}) put(robot, name, Lifecycle::kInactive);
   robot.run_for(25s);
-  EXPECT_EQ(robot.count_asked("controller: start"), 1u) << transcript(robot);
-  EXPECT_TRUE(are_active(robot)) << transcript(robot);
-  EXPECT_EQ(robot.count("resolved"), 2u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("controller: start"), 1u);
+  EXPECT_TRUE(are_active(robot));
+  EXPECT_EQ(robot.count("resolved"), 2u);
 }
 
 // Its manager brings it up in time.
 TEST(Groups, AMemberWhoseManagerBringsItUpNeedsNoMore) {
   TestRobot robot = robot_with_group(rules_of_group(gone_rule("planner")));
-  robot.kill("planner");
-  robot.run_for(4s);
+  robot.kill("planner", 4s);
   put(robot, "planner", Lifecycle::kInactive);
   robot.run_for(1s);
   put(robot, "planner", Lifecycle::kActive);
   robot.run_for(60s);
-  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("manager: ")) << transcript(robot);
-  EXPECT_EQ(robot.count("resolved"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("planner: activate"));
+  EXPECT_FALSE(robot.was_asked("manager: "));
+  EXPECT_EQ(robot.count("resolved"), 1u);
 }
 
 }  // namespace

@@ -58,9 +58,8 @@ struct TwoComputers {
     return options;
   }
   void begin() {
-    robot.discover();
-    robot.run_for(8s);
-    EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+    robot.discover(8s);
+    EXPECT_EQ(robot.count("detected"), 0u);
     robot.said.clear();
     for (std::size_t s = 0; s < robot.rules().strategies.size(); ++s)
       before.push_back(beliefs()[StrategyId(s)].mean().value);
@@ -81,7 +80,7 @@ struct TwoComputers {
       const std::string& rule = rules[rules.strategies[s].rule].name;
       if (std::ranges::find(of, rule) == of.end()) continue;
       EXPECT_EQ(beliefs()[StrategyId(s)].mean().value, before[s])
-          << rule << "." << rules.strategies[s].name << transcript(robot);
+          << rule << "." << rules.strategies[s].name;
     }
   }
 
@@ -92,18 +91,15 @@ struct TwoComputers {
 TEST(Hosts, ThatAreNotHeardAreOneCauseAndNothingIsDoneThere) {
   TwoComputers two;
   two.begin();
-  two.robot.cut("rover2");
-  two.robot.run_for(5s);
+  two.robot.cut("rover2", 5s);
   two.robot.asked.clear();
   two.robot.run_for(300s);
-  EXPECT_TRUE(two.robot.asked.empty()) << transcript(two.robot);
-  EXPECT_EQ(two.robot.count("rover2, where camera and lidar ran, is unreachable"), 1u)
-      << transcript(two.robot);
+  EXPECT_TRUE(two.robot.asked.empty());
+  EXPECT_EQ(two.robot.count("rover2, where camera and lidar ran, is unreachable"), 1u);
   for (const char* rule : {"CameraGone", "LidarSilent", "FusionSilent"})
-    EXPECT_EQ(two.phase(rule), RulePhase::kFailing) << rule << transcript(two.robot);
-  EXPECT_GE(two.robot.count("CameraGone waits: camera is on rover2, which is unreachable"), 1u)
-      << transcript(two.robot);
-  EXPECT_EQ(two.robot.count("CameraGone is exhausted"), 0u) << transcript(two.robot);
+    EXPECT_EQ(two.phase(rule), RulePhase::kFailing) << rule;
+  EXPECT_GE(two.robot.count("CameraGone waits: camera is on rover2, which is unreachable"), 1u);
+  EXPECT_EQ(two.robot.count("CameraGone is exhausted"), 0u);
   two.expect_nothing_learned({"CameraGone", "LidarSilent", "FusionSilent"});
 }
 
@@ -111,11 +107,10 @@ TEST(Hosts, ThatAreNotHeardAreOneCauseAndNothingIsDoneThere) {
 TEST(Hosts, WhatWasTriedBeforeAnybodyKnewIsForgiven) {
   TwoComputers two;
   two.begin();
-  two.robot.cut("rover2");
-  two.robot.run_for(3s);
-  EXPECT_EQ(two.phase("LidarSilent"), RulePhase::kExhausted) << transcript(two.robot);
+  two.robot.cut("rover2", 3s);
+  EXPECT_EQ(two.phase("LidarSilent"), RulePhase::kExhausted);
   two.robot.run_for(2s);
-  EXPECT_EQ(two.phase("LidarSilent"), RulePhase::kFailing) << transcript(two.robot);
+  EXPECT_EQ(two.phase("LidarSilent"), RulePhase::kFailing);
   two.robot.run_for(120s);
   two.expect_nothing_learned({"LidarSilent"});
 }
@@ -124,17 +119,16 @@ TEST(Hosts, ThatAreHeardAgainGoOnAsBefore) {
   for (const Duration length : {Duration(8s), Duration(60s)}) {
     TwoComputers two;
     two.begin();
-    two.robot.cut("rover2");
-    two.robot.run_for(length);
+    two.robot.cut("rover2", length);
     two.robot.mend("rover2");
     two.robot.asked.clear();
     two.robot.run_for(3s);
-    EXPECT_TRUE(two.robot.asked.empty()) << transcript(two.robot);
-    EXPECT_EQ(two.robot.count("rover2 is reachable again"), 1u) << transcript(two.robot);
+    EXPECT_TRUE(two.robot.asked.empty());
+    EXPECT_EQ(two.robot.count("rover2 is reachable again"), 1u);
     for (const char* rule : {"CameraGone", "LidarSilent", "FusionSilent"})
-      EXPECT_EQ(two.phase(rule), RulePhase::kQuiet) << rule << transcript(two.robot);
+      EXPECT_EQ(two.phase(rule), RulePhase::kQuiet) << rule;
     two.robot.run_for(120s);
-    EXPECT_FALSE(two.robot.was_asked("camera:")) << transcript(two.robot);
+    EXPECT_FALSE(two.robot.was_asked("camera:"));
     two.expect_nothing_learned({"CameraGone", "LidarSilent"});
   }
 }
@@ -143,37 +137,32 @@ TEST(Hosts, ThatAreHeardAgainGoOnAsBefore) {
 TEST(Hosts, WhatDidNotComeBackWithItsComputerIsTriedThen) {
   TwoComputers two;
   two.begin();
-  two.robot.cut("rover2");
-  two.robot.run_for(30s);
+  two.robot.cut("rover2", 30s);
   two.robot["camera"].process = ProcessState::kGone;
   two.robot.asked.clear();
-  two.robot.mend("rover2");
-  two.robot.run_for(10s);
-  EXPECT_FALSE(two.robot.was_asked("camera:")) << transcript(two.robot);
+  two.robot.mend("rover2", 10s);
+  EXPECT_FALSE(two.robot.was_asked("camera:"));
   two.robot.run_for(3s);
-  EXPECT_TRUE(two.robot.was_asked("camera:")) << transcript(two.robot);
+  EXPECT_TRUE(two.robot.was_asked("camera:"));
 }
 
 TEST(Hosts, WhatBreaksHereMeanwhileIsHealed) {
   TwoComputers two;
   two.begin();
-  two.robot.cut("rover2");
-  two.robot.run_for(30s);
+  two.robot.cut("rover2", 30s);
   two.robot.kill("lamp");
-  two.robot.kill("fusion");
-  two.robot.run_for(10s);
-  EXPECT_TRUE(two.robot.works("lamp")) << transcript(two.robot);
-  EXPECT_TRUE(two.robot.was_asked("fusion: start")) << transcript(two.robot);
+  two.robot.kill("fusion", 10s);
+  EXPECT_TRUE(two.robot.works("lamp"));
+  EXPECT_TRUE(two.robot.was_asked("fusion: start"));
 }
 
 // A node that is silent while another one of its computer is received has a fault of its own.
 TEST(Hosts, AreNotBlamedForOneOfTheirNodes) {
   TwoComputers two;
   two.begin();
-  two.robot["lidar"].fault = "a person";
-  two.robot.run_for(30s);
-  EXPECT_EQ(two.robot.count("is unreachable"), 0u) << transcript(two.robot);
-  EXPECT_EQ(two.phase("LidarSilent"), RulePhase::kExhausted) << transcript(two.robot);
+  two.robot.fail("lidar", "a person", 30s);
+  EXPECT_EQ(two.robot.count("is unreachable"), 0u);
+  EXPECT_EQ(two.phase("LidarSilent"), RulePhase::kExhausted);
 }
 
 TEST(Hosts, DoNotKeepASafeStopWaiting) {
@@ -188,9 +177,8 @@ RULE Blind
 )");
   two.robot["lamp"].parameters["red"] = Value(false);
   two.begin();
-  two.robot.cut("rover2");
-  two.robot.run_for(10s);
-  EXPECT_EQ(two.robot["lamp"].parameters["red"], Value(true)) << transcript(two.robot);
+  two.robot.cut("rover2", 10s);
+  EXPECT_EQ(two.robot["lamp"].parameters["red"], Value(true));
 }
 
 // A person ended it here, and starts it there.
@@ -201,14 +189,13 @@ TEST(Hosts, WhatAPersonMovesToAnotherOneStaysDownNoMore) {
   const Departures& departures = two.robot.manager().knowledge().departures;
   two.robot["lamp"].process = ProcessState::kGone;
   two.robot.tell(ProcessSeen{lamp, ProcessState::kGone, two.robot["lamp"].pid, "killed by signal 2",
-                             Cause::kOrder});
-  two.robot.run_for(30s);
-  EXPECT_TRUE(departures.stays_down(lamp)) << transcript(two.robot);
+                             Cause::kOrder},
+                 30s);
+  EXPECT_TRUE(departures.stays_down(lamp));
   two.robot["lamp"].host = "rover2";
-  two.robot.start_by_hand("lamp");
-  two.robot.run_for(5s);
-  EXPECT_FALSE(departures.stays_down(lamp)) << transcript(two.robot);
-  EXPECT_FALSE(two.robot.was_asked("lamp: start process")) << transcript(two.robot);
+  two.robot.start_by_hand("lamp", 5s);
+  EXPECT_FALSE(departures.stays_down(lamp));
+  EXPECT_FALSE(two.robot.was_asked("lamp: start process"));
 }
 
 // The next culprit may begin while the computer is out of reach.
@@ -241,10 +228,9 @@ RULE Fused
 )");
   two.robot["fusion"].parameters["source"] = Value(std::int64_t{1});
   two.begin();
-  two.robot.cut("rover2");
-  two.robot.run_for(300s);
-  EXPECT_EQ(two.robot.count_asked("fusion: set source to 2"), 1u) << transcript(two.robot);
-  EXPECT_EQ(two.phase("Fused"), RulePhase::kFailing) << transcript(two.robot);
+  two.robot.cut("rover2", 300s);
+  EXPECT_EQ(two.robot.count_asked("fusion: set source to 2"), 1u);
+  EXPECT_EQ(two.phase("Fused"), RulePhase::kFailing);
   two.expect_nothing_learned({"Fused"});
 }
 
@@ -253,10 +239,9 @@ TEST(Hosts, OfWhichNothingIsKnownAreNotBlamed) {
   two.begin();
   two.robot.tell(HostHeard{"rovr2", false});
   two.robot.tell(HostHeard{"", false});
-  two.robot["fusion"].fault = "restart";
-  two.robot.run_for(30s);
-  EXPECT_TRUE(two.robot.works("fusion")) << transcript(two.robot);
-  EXPECT_EQ(two.robot.count("is unreachable"), 0u) << transcript(two.robot);
+  two.robot.fail("fusion", "restart", 30s);
+  EXPECT_TRUE(two.robot.works("fusion"));
+  EXPECT_EQ(two.robot.count("is unreachable"), 0u);
 }
 
 // HOST names a computer that does not exist, and no node was ever seen there.
@@ -273,23 +258,19 @@ RULE FusionSilent
 )");
   robot.add("fusion", {}, "/fused");
   robot.discover();
-  robot.tell(HostReached{robot.id("lidar"), false});
-  robot.run_for(8s);
-  robot["fusion"].fault = "redeploy";
-  robot.run_for(30s);
-  EXPECT_TRUE(robot.works("fusion")) << transcript(robot);
+  robot.tell(HostReached{robot.id("lidar"), false}, 8s);
+  robot.fail("fusion", "redeploy", 30s);
+  EXPECT_TRUE(robot.works("fusion"));
 }
 
 TEST(Hosts, AllAtOnceMayBeThisOneThatIsCutOff) {
   TwoComputers two;
   two.robot["lidar"].host = "rover3";
   two.begin();
-  two.robot.cut("rover2");
-  two.robot.run_for(6s);
-  EXPECT_EQ(two.robot.count("this one may be cut off"), 0u) << transcript(two.robot);
-  two.robot.cut("rover3");
-  two.robot.run_for(6s);
-  EXPECT_EQ(two.robot.count("this one may be cut off"), 1u) << transcript(two.robot);
+  two.robot.cut("rover2", 6s);
+  EXPECT_EQ(two.robot.count("this one may be cut off"), 0u);
+  two.robot.cut("rover3", 6s);
+  EXPECT_EQ(two.robot.count("this one may be cut off"), 1u);
   EXPECT_EQ(two.robot.count("rover3, where lidar ran, is unreachable"), 1u);
 }
 
@@ -299,15 +280,12 @@ TEST(Hosts, AreNotJudgedByOneThatIsDeaf) {
   TwoComputers two;
   two.begin();
   two.robot.tell(HearingLost{"nothing comes back"});
-  two.robot.cut("rover2");
-  two.robot.run_for(3s);
-  EXPECT_TRUE(two.robot.asked.empty()) << transcript(two.robot);
-  two.robot.mend("rover2");
-  two.robot.run_for(2s);
-  two.robot.tell(HearingRegained{});
-  two.robot.run_for(30s);
-  EXPECT_FALSE(two.robot.was_asked("camera:")) << transcript(two.robot);
-  EXPECT_EQ(two.robot.count("is unreachable"), 0u) << transcript(two.robot);
+  two.robot.cut("rover2", 3s);
+  EXPECT_TRUE(two.robot.asked.empty());
+  two.robot.mend("rover2", 2s);
+  two.robot.tell(HearingRegained{}, 30s);
+  EXPECT_FALSE(two.robot.was_asked("camera:"));
+  EXPECT_EQ(two.robot.count("is unreachable"), 0u);
 }
 
 // Whenever it is cut, for how long and how often, and whatever dies on this side meanwhile.
@@ -332,8 +310,7 @@ RC_GTEST_PROP(Hosts, TeachNothingByTheirSilence, ()) {
       RC_ASSERT(two.phase("LidarSilent") != RulePhase::kExhausted);
       RC_ASSERT(two.phase("FusionSilent") != RulePhase::kExhausted);
     }
-    two.robot.mend("rover2");
-    two.robot.run_for(20s);
+    two.robot.mend("rover2", 20s);
     RC_ASSERT(two.robot.works("lamp"));
     RC_ASSERT(two.robot.works("fusion"));
   }

@@ -57,10 +57,8 @@ TEST(Improvise, ReplacesAProcessThatNoRuleIsAbout) {
     robot.add("camera", {}, "/rgb");
     robot.add("map");
     robot.add("lidar");
-    robot.discover();
-    robot.run_for(6s);
-    robot.kill("map");
-    robot.run_for(20s);
+    robot.discover(6s);
+    robot.kill("map", 20s);
     EXPECT_EQ(robot.works("map"), is_on);
     EXPECT_EQ(robot.count("improvised_redeploy") > 0, is_on) << "what is said is marked";
   }
@@ -71,11 +69,9 @@ TEST(Improvise, BringsALifecycleBackAndLeavesAnInactiveOneAlone) {
   robot.add("camera", {}, "/rgb");
   robot.add("map").state = Lifecycle::kInactive;
   robot.add("lidar");
-  robot.discover();
-  robot.run_for(6s);
+  robot.discover(6s);
   robot["lidar"].state = Lifecycle::kUnconfigured;
-  robot.tell(LifecycleRead{ComponentId(2), Lifecycle::kUnconfigured});
-  robot.run_for(20s);
+  robot.tell(LifecycleRead{ComponentId(2), Lifecycle::kUnconfigured}, 20s);
   EXPECT_TRUE(robot.was_asked("lidar: "));
   EXPECT_FALSE(robot.was_asked("map: activate"));
   EXPECT_FALSE(robot.was_asked("map: stop"));

@@ -55,8 +55,7 @@ std::string rules_of(const std::vector<Broken>& all) {
 
 void set_up(TestRobot& robot, const std::vector<Broken>& all) {
   for (const Broken& c : all) robot.add(c.name, c.needs, "/" + c.name).hears = c.hears;
-  robot.discover();
-  robot.run_for(2s);
+  robot.discover(2s);
 }
 
 void break_it(TestRobot& robot, const std::vector<Broken>& all) {

@@ -35,6 +35,16 @@ struct KnownStart : testing::Test {
   }
 
   void begin(const KnownRobot& earlier) { robot.manager().remember(earlier); }
+  // All that an earlier run knew shows up, and the left one is known to be listened to.
+  void begin_whole(const KnownRobot& earlier = known()) {
+    begin(earlier);
+    show_both();
+    hear_the_rest();
+  }
+  void hear_the_rest() {
+    read_motor();
+    know_listener("/left_image");
+  }
   void show(const std::string& name, int pid) {
     robot.tell(NodeAppeared{"/" + name, pid});
     robot.tell(EndpointAppeared{"/" + name, EndpointKind::kPublisher, "/" + name + "_image"});
@@ -63,10 +73,10 @@ struct KnownStart : testing::Test {
   // Not before the time of discovery, and then.
   void expect_full_wait() {
     run_for(4800ms - (robot.now - Time()));
-    EXPECT_EQ(detected(), 0u) << transcript(robot);
-    EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+    EXPECT_EQ(detected(), 0u);
+    EXPECT_TRUE(robot.asked.empty());
     run_for(1s);
-    EXPECT_EQ(detected(), 1u) << transcript(robot);
+    EXPECT_EQ(detected(), 1u);
   }
 
   TestRobot robot{kTwoCameras};
@@ -80,35 +90,29 @@ TEST_F(KnownStart, WhatIsSilentAmongAllThatWasExpectedIsJudgedAtOnce) {
   run_for(200ms);
   know_listener("/left_image");
   run_for(200ms);
-  EXPECT_EQ(detected(), 0u) << "it has been listened to for 200 ms" << transcript(robot);
+  EXPECT_EQ(detected(), 0u) << "it has been listened to for 200 ms";
   run_for(200ms);
-  EXPECT_EQ(detected(), 1u) << transcript(robot);
+  EXPECT_EQ(detected(), 1u);
   EXPECT_LT(robot.now - Time(), 1s);
 }
 
 TEST_F(KnownStart, ARateIsKnownOnceItWasListenedToForAWholeWindow) {
   right_speaks = false;
-  begin(known());
-  show_both();
-  read_motor();
-  know_listener("/left_image");
+  begin_whole();
   know_listener("/right_image");
   run_for(900ms);
-  EXPECT_EQ(robot.count("RightSilent detected"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("RightSilent detected"), 0u);
   run_for(2s);
-  EXPECT_EQ(robot.count("RightSilent detected"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("RightSilent detected"), 1u);
 }
 
 TEST_F(KnownStart, WhatSpeaksInTimeIsNotSilent) {
-  begin(known());
-  show_both();
-  read_motor();
-  know_listener("/left_image");
+  begin_whole();
   for (int i = 0; i < 60; ++i) {
     run_for(100ms);
     robot.tell(SampleArrived{TopicId(1u - right_image().index), 1});
   }
-  EXPECT_EQ(detected(), 0u) << transcript(robot);
+  EXPECT_EQ(detected(), 0u);
 }
 
 // It may not know its subscriber yet, and publish all the time.
@@ -122,17 +126,13 @@ TEST_F(KnownStart, ANodeThatHasNotDiscoveredItsListenerMaySendUnreceived) {
 TEST_F(KnownStart, WhileAnythingIsMissingAllSilenceWaits) {
   begin(known());
   show("left", 11);
-  read_motor();
-  know_listener("/left_image");
+  hear_the_rest();
   right_speaks = false;  // it is discovered late, or died: that is unknown
   expect_full_wait();
 }
 
 TEST_F(KnownStart, ATopicThatIsMissingAndUnprovenMayBeTheCause) {
-  begin(known());
-  show_both();
-  read_motor();
-  know_listener("/left_image");
+  begin_whole();
   right_speaks = false;
   expect_full_wait();
 }
@@ -147,10 +147,7 @@ TEST_F(KnownStart, AValueThatTheLastRunReadIsWaitedFor) {
 TEST_F(KnownStart, AnEndThatIsMissingIsWaitedFor) {
   KnownRobot earlier = known();
   earlier.parts[1].ends.push_back({EndpointKind::kSubscriber, "/left_image"});
-  begin(earlier);
-  show_both();
-  read_motor();
-  know_listener("/left_image");
+  begin_whole(earlier);
   expect_full_wait();
 }
 
@@ -159,8 +156,7 @@ TEST_F(KnownStart, AnotherProcessHasTheTimeOfAnyOther) {
   begin(known());
   show("left", 99);
   show("right", 12);
-  read_motor();
-  know_listener("/left_image");
+  hear_the_rest();
   expect_full_wait();
 }
 
@@ -170,18 +166,14 @@ TEST_F(KnownStart, AProcessOfWhichNothingIsKnownHasTheTimeOfAnyOther) {
   begin(earlier);
   show("left", 0);
   show("right", 12);
-  read_motor();
-  know_listener("/left_image");
+  hear_the_rest();
   expect_full_wait();
 }
 
 TEST_F(KnownStart, WhatTheLastRunNeverHeardHasTheTimeOfAnyOther) {
   KnownRobot earlier = known();
   earlier.heard = {"/right_image"};
-  begin(earlier);
-  show_both();
-  read_motor();
-  know_listener("/left_image");
+  begin_whole(earlier);
   expect_full_wait();
 }
 
@@ -189,10 +181,7 @@ TEST_F(KnownStart, WhatTheLastRunNeverHeardHasTheTimeOfAnyOther) {
 TEST_F(KnownStart, ARunThatDidNotSeeTheRobotWholeExpectsNothing) {
   KnownRobot earlier = known();
   earlier.is_whole = false;
-  begin(earlier);
-  show_both();
-  read_motor();
-  know_listener("/left_image");
+  begin_whole(earlier);
   expect_full_wait();
 }
 
@@ -201,8 +190,7 @@ TEST_F(KnownStart, AnotherPublisherMaySpeakInItsPlace) {
   show_both();
   robot.tell(NodeAppeared{"/spare", 50});
   robot.tell(EndpointAppeared{"/spare", EndpointKind::kPublisher, "/left_image"});
-  read_motor();
-  know_listener("/left_image");
+  hear_the_rest();
   expect_full_wait();
 }
 
@@ -210,8 +198,7 @@ TEST_F(KnownStart, TwoOfOneNameAreNotWhatWasExpected) {
   begin(known());
   show_both();
   robot.tell(NamesakesSeen{"/right", 1});
-  read_motor();
-  know_listener("/left_image");
+  hear_the_rest();
   expect_full_wait();
 }
 
@@ -220,8 +207,7 @@ TEST_F(KnownStart, ANodeThatLeavesMeanwhileIsNotExpected) {
   show_both();
   robot.tell(NodeVanished{"/right"});
   show("right", 12);
-  read_motor();
-  know_listener("/left_image");
+  hear_the_rest();
   expect_full_wait();
 }
 
@@ -230,34 +216,29 @@ TEST_F(KnownStart, AMomentOfDeafnessEndsAllExpectations) {
   show_both();
   robot.tell(HearingLost{"a test"});
   robot.tell(HearingRegained{});
-  read_motor();
-  know_listener("/left_image");
+  hear_the_rest();
   run_for(2s);
-  EXPECT_EQ(detected(), 0u) << transcript(robot);
+  EXPECT_EQ(detected(), 0u);
 }
 
 TEST_F(KnownStart, ASleepAtTheBeginningExpectsNothing) {
   begin(known());
   show_both();
   robot.tell(Overslept{2s});
-  read_motor();
-  know_listener("/left_image");
+  hear_the_rest();
   run_for(2s);
-  EXPECT_EQ(detected(), 0u) << transcript(robot);
+  EXPECT_EQ(detected(), 0u);
 }
 
 // A component that a person starts anew in the moment of the verdict gets its grace period.
 TEST_F(KnownStart, ANodeStartedAgainAfterwardsHasItsTime) {
-  begin(known());
-  show_both();
-  read_motor();
-  know_listener("/left_image");
+  begin_whole();
   run_for(200ms);
   robot.tell(NodeVanished{"/left"});
   show("left", 77);
   run_for(2s);
-  EXPECT_EQ(detected(), 0u) << transcript(robot);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(detected(), 0u);
+  EXPECT_TRUE(robot.asked.empty());
 }
 
 TEST_F(KnownStart, WhatWasNeverSeenWaitsAsEver) {
@@ -266,13 +247,12 @@ TEST_F(KnownStart, WhatWasNeverSeenWaitsAsEver) {
   earlier.topics = earlier.heard = {"/left_image"};
   begin(earlier);
   show("left", 11);
-  read_motor();
-  know_listener("/left_image");
+  hear_the_rest();
   right_speaks = false;
   run_for(4800ms);
-  EXPECT_EQ(robot.count("right was never seen"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("right was never seen"), 0u);
   run_for(400ms);
-  EXPECT_EQ(robot.count("right was never seen"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("right was never seen"), 1u);
 }
 
 // ---- knowledge for the next run
@@ -307,8 +287,7 @@ TEST_F(KnownStart, AShorterWaitHasNotSeenAll) {
   Manager::Options options;
   options.discovery = 2s;
   TestRobot hasty(kTwoCameras, std::make_unique<BayesPlanner>(), options);
-  hasty.tell(NodeAppeared{"/left", 11});
-  hasty.run_for(10s);
+  hasty.tell(NodeAppeared{"/left", 11}, 10s);
   EXPECT_FALSE(hasty.manager().knowledge().known_robot().is_whole);
 }
 

@@ -21,8 +21,7 @@ class LastResort : public testing::TestWithParam<PlannerFactory> {
         GetParam()(), options);
     robot.add("loc", {}, "/pose");
     robot.add("base").parameters["max_speed"] = Value(1.0);
-    robot.discover();
-    robot.run_for(4s);
+    robot.discover(4s);
     return robot;
   }
 };
@@ -57,58 +56,53 @@ std::optional<Duration> last_resort_waited(const TestRobot& robot) {
 
 void expect_last_resort_within(const TestRobot& robot, Duration time) {
   const auto begun = last_resort_waited(robot);
-  ASSERT_TRUE(begun) << transcript(robot);
-  EXPECT_LE(*begun, time) << transcript(robot);
+  ASSERT_TRUE(begun);
+  EXPECT_LE(*begun, time);
 }
 
 TEST_P(LastResort, OpensTheInterlockBehindWhichTheRepairWaits) {
   TestRobot robot = driving("INTERLOCK speed < 0.1\n" + loc_lost());
   robot.signal("speed", Value(1.0));
-  robot["loc"].fault = "restart";
-  robot.run_for(3s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "restart", 3s);
+  EXPECT_TRUE(stands_still(robot));
   expect_last_resort_within(robot, 0s);  // an interlock opens at no known time
   EXPECT_FALSE(robot.works("loc"));
-  robot.signal("speed", Value(0.0));
-  robot.run_for(5s);
-  EXPECT_TRUE(robot.works("loc")) << "the repair goes on" << transcript(robot);
-  EXPECT_EQ(robot.count("LocLost resolved by help"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("exhausted"), 0u) << transcript(robot);
+  robot.signal("speed", Value(0.0), 5s);
+  EXPECT_TRUE(robot.works("loc")) << "the repair goes on";
+  EXPECT_EQ(robot.count("LocLost resolved by help"), 1u);
+  EXPECT_EQ(robot.count("exhausted"), 0u);
   EXPECT_TRUE(stands_still(robot)) << "it is not undone";
 }
 
 TEST_P(LastResort, GoesBesideAStrategyThatCannotHelpInTime) {
   TestRobot robot = driving(loc_lost(" WITHIN 1s", "redeploy 60"));
-  robot["loc"].fault = "redeploy";
-  robot.run_for(1200ms);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "redeploy", 1200ms);
+  EXPECT_TRUE(stands_still(robot));
   expect_last_resort_within(robot, 0s);
   robot.run_for(10s);
-  EXPECT_TRUE(robot.works("loc")) << "the redeploy went on" << transcript(robot);
-  EXPECT_EQ(robot.count_asked("loc: start process"), 1u) << transcript(robot);
+  EXPECT_TRUE(robot.works("loc")) << "the redeploy went on";
+  EXPECT_EQ(robot.count_asked("loc: start process"), 1u);
 }
 
 TEST_P(LastResort, ComesInItsTimeIfTheOthersDoNotHelp) {
   TestRobot robot = driving(loc_lost(" WITHIN 3s"));
-  robot["loc"].fault = "a person";
-  robot.run_for(1500ms);
-  EXPECT_FALSE(stands_still(robot)) << "the others have their time" << transcript(robot);
+  robot.fail("loc", "a person", 1500ms);
+  EXPECT_FALSE(stands_still(robot)) << "the others have their time";
   robot.run_for(2500ms);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  EXPECT_TRUE(stands_still(robot));
   expect_last_resort_within(robot, 3s);
-  EXPECT_EQ(robot.count("exhausted"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("exhausted"), 0u);
   robot.run_for(60s);
-  EXPECT_EQ(robot.count("(help, "), 4u) << "ATTEMPTS are the others'" << transcript(robot);
-  EXPECT_EQ(robot.count("(stand_still, "), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("LocLost is exhausted"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("(help, "), 4u) << "ATTEMPTS are the others'";
+  EXPECT_EQ(robot.count("(stand_still, "), 1u);
+  EXPECT_EQ(robot.count("LocLost is exhausted"), 1u);
 }
 
 TEST_P(LastResort, DoesNotComeIfTheOthersHelpInTime) {
   TestRobot robot = driving(loc_lost(" WITHIN 3s"));
-  robot["loc"].fault = "restart";
-  robot.run_for(10s);
-  EXPECT_TRUE(robot.works("loc")) << transcript(robot);
-  EXPECT_FALSE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "restart", 10s);
+  EXPECT_TRUE(robot.works("loc"));
+  EXPECT_FALSE(stands_still(robot));
 }
 
 TEST_P(LastResort, DoesNotWaitForAStorm) {
@@ -126,33 +120,29 @@ TEST_P(LastResort, DoesNotWaitForAStorm) {
   robot.add("loc", {}, "/pose");
   robot.add("base").parameters["max_speed"] = Value(1.0);
   for (int i = 0; i < 4; ++i) robot.add("x" + std::to_string(i), {}, "/x" + std::to_string(i));
-  robot.discover();
-  robot.run_for(4s);
+  robot.discover(4s);
   for (int i = 0; i < 4; ++i) robot["x" + std::to_string(i)].fault = "redeploy";
-  robot["loc"].fault = "restart";
-  robot.run_for(4s);
-  EXPECT_GE(robot.count("a person must look: "), 1u) << transcript(robot);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "restart", 4s);
+  EXPECT_GE(robot.count("a person must look: "), 1u);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 TEST_P(LastResort, DoesNotWaitForABudgetAndSpendsNone) {
   Manager::Options options;
   options.governor.limits.overall = {1, 1h};
   TestRobot robot = driving(loc_lost(), options);
-  robot["loc"].fault = "a person";
-  robot.run_for(30s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "a person", 30s);
+  EXPECT_TRUE(stands_still(robot));
   expect_last_resort_within(robot, 2s);
-  EXPECT_EQ(robot.count("(help, "), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("(help, "), 1u);
 }
 
 TEST_P(LastResort, DoesNotWaitForABackoff) {
   Manager::Options options;
   options.governor.limits.backoff = {30s, 60s, 60s};
   TestRobot robot = driving(loc_lost(), options);
-  robot["loc"].fault = "a person";
-  robot.run_for(4s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "a person", 4s);
+  EXPECT_TRUE(stands_still(robot));
   expect_last_resort_within(robot, 2s);
 }
 
@@ -160,21 +150,19 @@ TEST_P(LastResort, NeedsNoApproval) {
   Manager::Options options;
   options.governor.approval = Approval::kEach;
   TestRobot robot = driving(loc_lost(), options);
-  robot["loc"].fault = "restart";
-  robot.run_for(4s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "restart", 4s);
+  EXPECT_TRUE(stands_still(robot));
   expect_last_resort_within(robot, 2s);
   EXPECT_EQ(robot.manager().governor().asked(), std::vector{StrategyId(0)})
-      << "the person is still asked about the repair" << transcript(robot);
+      << "the person is still asked about the repair";
 }
 
 TEST_P(LastResort, IsNotHeldByTheQuietPeriodAtTheStart) {
   Manager::Options options;
   options.governor.quiet_at_start = 60s;
   TestRobot robot = driving(loc_lost(), options);
-  robot["loc"].fault = "restart";
-  robot.run_for(2s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "restart", 2s);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 std::string lidar_rule() {
@@ -191,16 +179,14 @@ TEST_P(LastResort, DoesNotWaitForTheCauseOfItsFailure) {
     robot.add("lid", {}, "/scan");
     robot.add("loc", {"lid"}, "/pose");
     robot.add("base").parameters["max_speed"] = Value(1.0);
-    robot.discover();
-    robot.run_for(4s);
+    robot.discover(4s);
     robot["lid"].start_time = 10s;
-    robot["lid"].fault = fault;
-    robot.run_for(5s);
-    EXPECT_TRUE(stands_still(robot)) << fault << transcript(robot);
+    robot.fail("lid", fault, 5s);
+    EXPECT_TRUE(stands_still(robot)) << fault;
     expect_last_resort_within(robot, 3s);
     robot.run_for(60s);
-    EXPECT_FALSE(robot.was_asked("loc:")) << fault << transcript(robot);
-    EXPECT_EQ(robot.count("(stand_still, "), 1u) << fault << transcript(robot);
+    EXPECT_FALSE(robot.was_asked("loc:")) << fault;
+    EXPECT_EQ(robot.count("(stand_still, "), 1u) << fault;
   }
 }
 
@@ -211,11 +197,9 @@ TEST_P(LastResort, DoesNotWaitForAHost) {
       GetParam()());
   robot.add("loc", {}, "/pose").host = "rover2";
   robot.add("base").parameters["max_speed"] = Value(1.0);
-  robot.discover();
-  robot.run_for(4s);
-  robot.cut("rover2");
-  robot.run_for(8s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.discover(4s);
+  robot.cut("rover2", 8s);
+  EXPECT_TRUE(stands_still(robot));
   expect_last_resort_within(robot, 2s);
 }
 
@@ -229,10 +213,9 @@ TEST_P(LastResort, OfTwoRulesDoNotWaitForEachOther) {
   robot["base"].parameters["max_turn"] = Value(1.0);
   robot["loc"].parameters["light"] = Value(std::int64_t{0});
   robot.signal("sight", Value(0.1));
-  robot["loc"].fault = "a person";
-  robot.run_for(4s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
-  EXPECT_EQ(robot["base"].parameters["max_turn"], Value(0.0)) << transcript(robot);
+  robot.fail("loc", "a person", 4s);
+  EXPECT_TRUE(stands_still(robot));
+  EXPECT_EQ(robot["base"].parameters["max_turn"], Value(0.0));
 }
 
 // Another rule's strategy has the base.
@@ -241,13 +224,11 @@ TEST_P(LastResort, GoesToAComponentThatIsBeingAdapted) {
                             "RULE Hot\nPOLICIES ERROR\nTRIGGER heat > 80\n"
                             "STRATEGY fan 60 10\nADAPTATION base set_parameter fan 1 100\n");
   robot["base"].parameters["fan"] = Value(std::int64_t{0});
-  robot.signal("heat", Value(90.0));
-  robot.run_for(500ms);
-  ASSERT_TRUE(robot.was_asked("base: set fan")) << transcript(robot);
-  robot["loc"].fault = "a person";
-  robot.run_for(4s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
-  EXPECT_EQ(robot["base"].parameters["fan"], Value(std::int64_t{1})) << transcript(robot);
+  robot.signal("heat", Value(90.0), 500ms);
+  ASSERT_TRUE(robot.was_asked("base: set fan"));
+  robot.fail("loc", "a person", 4s);
+  EXPECT_TRUE(stands_still(robot));
+  EXPECT_EQ(robot["base"].parameters["fan"], Value(std::int64_t{1}));
 }
 
 // A strategy that would set the same thing yields; it is not undone afterwards, and does not come back
@@ -256,29 +237,25 @@ TEST_P(LastResort, StaysAgainstOtherStrategies) {
   TestRobot robot = driving(loc_lost() +
                             "RULE Late\nPOLICIES ERROR\nTRIGGER delay > 5\nSTRATEGY faster 60 10\n"
                             "ADAPTATION base set_parameter max_speed 2.0 10\n");
-  robot.signal("delay", Value(10.0));
-  robot.run_for(500ms);
-  ASSERT_EQ(robot["base"].parameters["max_speed"], Value(2.0)) << transcript(robot);
-  robot["loc"].fault = "a person";
-  robot.run_for(4s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.signal("delay", Value(10.0), 500ms);
+  ASSERT_EQ(robot["base"].parameters["max_speed"], Value(2.0));
+  robot.fail("loc", "a person", 4s);
+  EXPECT_TRUE(stands_still(robot));
   robot.run_for(60s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  EXPECT_TRUE(stands_still(robot));
   robot["loc"].fault.clear();
   robot.run_for(100ms);
-  EXPECT_TRUE(stands_still(robot)) << "it is not undone" << transcript(robot);
+  EXPECT_TRUE(stands_still(robot)) << "it is not undone";
 }
 
 TEST_P(LastResort, YieldsToAPersonsOrder) {
   TestRobot robot = driving(loc_lost() +
                             "RULE Late\nPOLICIES ERROR\nTRIGGER delay > 5\nSTRATEGY faster 60 10\n"
                             "ADAPTATION base set_parameter max_speed 2.0 10\n");
-  robot["loc"].fault = "a person";
-  robot.run_for(4s);
-  ASSERT_TRUE(stands_still(robot)) << transcript(robot);
-  robot.order({1, "Ann", "", RunStrategy{StrategyId(2)}});
-  robot.run_for(10s);
-  EXPECT_EQ(robot["base"].parameters["max_speed"], Value(2.0)) << transcript(robot);
+  robot.fail("loc", "a person", 4s);
+  ASSERT_TRUE(stands_still(robot));
+  robot.order({1, "Ann", "", RunStrategy{StrategyId(2)}}, 10s);
+  EXPECT_EQ(robot["base"].parameters["max_speed"], Value(2.0));
 }
 
 // A strategy of its own rule fails after it: what that had set before is not set again.
@@ -288,34 +265,31 @@ TEST_P(LastResort, IsNotUndoneByTheUndoingOfAnother) {
       "STRATEGY slower 60 10\nADAPTATION base set_parameter max_speed 0.5 20\n"
       "STRATEGY stand_still 100 10 LASTRESORT WITHIN 5s\n"
       "ADAPTATION base set_parameter max_speed 0.0 1\n");
-  robot["loc"].fault = "a person";
-  robot.run_for(60s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "a person", 60s);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 TEST_P(LastResort, IsDoneAnewInAProcessThatBeganAnew) {
   TestRobot robot = driving(loc_lost() +
                             "RULE Base\nPOLICIES ERROR\nTRIGGER !alive(base)\n"
                             "STRATEGY again 90 10\nADAPTATION base redeploy 5\n");
-  robot["loc"].fault = "a person";
-  robot.run_for(4s);
-  ASSERT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.fail("loc", "a person", 4s);
+  ASSERT_TRUE(stands_still(robot));
   robot.kill("base");
   robot["base"].parameters["max_speed"] = Value(1.0);
   robot.run_for(10s);
-  EXPECT_TRUE(robot.works("base")) << transcript(robot);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  EXPECT_TRUE(robot.works("base"));
+  EXPECT_TRUE(stands_still(robot));
 }
 
 TEST_P(LastResort, IsTriedAgainIfItCouldNotBeCarriedOut) {
   TestRobot robot = driving(loc_lost());
   robot["base"].refuses = true;
-  robot["loc"].fault = "a person";
-  robot.run_for(8s);
-  ASSERT_GE(robot.count("stand_still did not resolve"), 1u) << transcript(robot);
+  robot.fail("loc", "a person", 8s);
+  ASSERT_GE(robot.count("stand_still did not resolve"), 1u);
   robot["base"].refuses = false;
   robot.run_for(10s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 // The process may have been about to end when it refused.
@@ -324,42 +298,33 @@ TEST_P(LastResort, IsTriedAgainInANewProcessAfterAllAttempts) {
   once.replace(once.find("ATTEMPTS 4"), 10, "ATTEMPTS 1");
   TestRobot robot = driving(once);
   robot["base"].refuses = true;
-  robot["loc"].fault = "a person";
-  robot.run_for(8s);
+  robot.fail("loc", "a person", 8s);
   robot["base"].refuses = false;
   robot.run_for(8s);
-  ASSERT_EQ(robot.count("stand_still did not resolve"), 1u) << transcript(robot);
-  ASSERT_FALSE(stands_still(robot)) << transcript(robot);
-  robot.kill("base");
-  robot.run_for(3s);
-  robot.start_by_hand("base");
-  robot.run_for(3s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  ASSERT_EQ(robot.count("stand_still did not resolve"), 1u);
+  ASSERT_FALSE(stands_still(robot));
+  robot.kill("base", 3s);
+  robot.start_by_hand("base", 3s);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 // It may go on at any moment, and obeys then.
 TEST_P(LastResort, IsAskedOfAComponentThatHangs) {
   TestRobot robot = driving(loc_lost());
-  robot.stop("base");
-  robot.run_for(3s);
-  robot["loc"].fault = "a person";
-  robot.run_for(5s);
-  EXPECT_TRUE(robot.was_asked("base: set max_speed")) << transcript(robot);
-  EXPECT_EQ(robot.count("held back"), 0u) << transcript(robot);
+  robot.stop("base", 3s);
+  robot.fail("loc", "a person", 5s);
+  EXPECT_TRUE(robot.was_asked("base: set max_speed"));
+  EXPECT_EQ(robot.count("held back"), 0u);
 }
 
 // It is said that the safe stop cannot be done, and it is done as soon as it can be.
 TEST_P(LastResort, WaitsForItsComponentAndSaysSo) {
   TestRobot robot = driving(loc_lost());
-  robot.kill("base");
-  robot.run_for(3s);
-  robot["loc"].fault = "a person";
-  robot.run_for(5s);
-  EXPECT_EQ(robot.count("LocLost.stand_still is held back: base is not alive"), 1u)
-      << transcript(robot);
-  robot.start_by_hand("base");
-  robot.run_for(3s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.kill("base", 3s);
+  robot.fail("loc", "a person", 5s);
+  EXPECT_EQ(robot.count("LocLost.stand_still is held back: base is not alive"), 1u);
+  robot.start_by_hand("base", 3s);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 TEST_P(LastResort, SeveralFollowEachOther) {
@@ -367,12 +332,11 @@ TEST_P(LastResort, SeveralFollowEachOther) {
                             "STRATEGY brake 100 10 LASTRESORT WITHIN 4s\n"
                             "ADAPTATION base set_parameter brake true 1\n");
   robot["base"].parameters["brake"] = Value(false);
-  robot["loc"].fault = "a person";
-  robot.run_for(3500ms);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
-  EXPECT_EQ(robot["base"].parameters["brake"], Value(false)) << transcript(robot);
+  robot.fail("loc", "a person", 3500ms);
+  EXPECT_TRUE(stands_still(robot));
+  EXPECT_EQ(robot["base"].parameters["brake"], Value(false));
   robot.run_for(2s);
-  EXPECT_EQ(robot["base"].parameters["brake"], Value(true)) << transcript(robot);
+  EXPECT_EQ(robot["base"].parameters["brake"], Value(true));
 }
 
 // The base cannot slow down: power is cut in the time of that one.
@@ -383,14 +347,12 @@ class LastResortsOfTwo : public LastResort {
         "COMPONENT motor NODE /motor LAUNCH \"motor\"\n" + loc_lost() +
         "STRATEGY cut 100 10 LASTRESORT WITHIN 3s\nADAPTATION motor set_parameter cut true 1\n");
     robot.add("motor").parameters["cut"] = Value(false);
-    robot.discover();
-    robot.run_for(4s);
+    robot.discover(4s);
     return robot;
   }
   static void expect_cut_in_time(TestRobot& robot) {
-    robot["loc"].fault = "a person";
-    robot.run_for(4s);
-    EXPECT_EQ(robot["motor"].parameters["cut"], Value(true)) << transcript(robot);
+    robot.fail("loc", "a person", 4s);
+    EXPECT_EQ(robot["motor"].parameters["cut"], Value(true));
   }
 };
 INSTANTIATE_TEST_SUITE_P(EachPlanner, LastResortsOfTwo, testing::Values(resort_paper, resort_bayes),
@@ -402,25 +364,22 @@ TEST_P(LastResortsOfTwo, TheSecondDoesNotWaitForOneThatIsRefused) {
   expect_cut_in_time(robot);
   robot["base"].refuses = false;
   robot.run_for(10s);
-  EXPECT_TRUE(stands_still(robot)) << "it is tried again" << transcript(robot);
+  EXPECT_TRUE(stands_still(robot)) << "it is tried again";
 }
 
 TEST_P(LastResortsOfTwo, TheSecondDoesNotWaitForOneWhoseComponentIsDown) {
   TestRobot robot = driving();
-  robot.kill("base");
-  robot.run_for(3s);
+  robot.kill("base", 3s);
   expect_cut_in_time(robot);
-  robot.start_by_hand("base");
-  robot.run_for(3s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.start_by_hand("base", 3s);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 TEST_P(LastResort, ComesAgainWithTheFailure) {
   TestRobot robot = driving(loc_lost());
   for (int time = 0; time < 2; ++time) {
-    robot["loc"].fault = "a person";
-    robot.run_for(4s);
-    EXPECT_TRUE(stands_still(robot)) << time << transcript(robot);
+    robot.fail("loc", "a person", 4s);
+    EXPECT_TRUE(stands_still(robot)) << time;
     robot["loc"].fault.clear();
     robot.run_for(4s);
     robot["base"].parameters["max_speed"] = Value(1.0);
@@ -446,10 +405,10 @@ TEST_P(LastResort, IsTakenBackAfterEachFailure) {
   for (std::size_t time = 1; time <= 4; ++time) {
     robot["loc"].fault = "redeploy";
     drive_for(robot, 1s);
-    EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+    EXPECT_TRUE(stands_still(robot));
     drive_for(robot, 9s);
-    EXPECT_FALSE(stands_still(robot)) << transcript(robot);
-    EXPECT_EQ(robot.count("StopIsOver resolved by go_on"), time) << transcript(robot);
+    EXPECT_FALSE(stands_still(robot));
+    EXPECT_EQ(robot.count("StopIsOver resolved by go_on"), time);
   }
 }
 
@@ -461,8 +420,8 @@ TEST_P(LastResort, IsNotTakenBackForEver) {
                             "STRATEGY cool 100 10 LASTRESORT WITHIN 1s\n"
                             "ADAPTATION base set_parameter max_speed 0.0 1\n");
   drive_for(robot, 10min);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
-  EXPECT_LE(robot.count_asked("base: set max_speed"), 20u) << transcript(robot);
+  EXPECT_TRUE(stands_still(robot));
+  EXPECT_LE(robot.count_asked("base: set max_speed"), 20u);
 }
 
 TEST_P(LastResort, ThatHelpedIsNamed) {
@@ -471,18 +430,15 @@ TEST_P(LastResort, ThatHelpedIsNamed) {
       "ADAPTATION loc set_parameter gear 1 50\nSTRATEGY stand_still 100 10 LASTRESORT\n"
       "ADAPTATION base set_parameter max_speed 0.0 5\n");
   robot["loc"].parameters["gear"] = Value(std::int64_t{0});
-  robot.signal("speed", Value(4.0));
-  robot.run_for(200ms);
-  ASSERT_TRUE(stands_still(robot)) << transcript(robot);
-  robot.signal("speed", Value(0.0));
-  robot.run_for(3s);
-  EXPECT_EQ(robot.count("TooFast resolved by"), 1u) << transcript(robot);
+  robot.signal("speed", Value(4.0), 200ms);
+  ASSERT_TRUE(stands_still(robot));
+  robot.signal("speed", Value(0.0), 3s);
+  EXPECT_EQ(robot.count("TooFast resolved by"), 1u);
 }
 
 TEST_P(LastResort, NothingIsLearnedOfIt) {
   TestRobot robot = driving(loc_lost());
-  robot["loc"].fault = "a person";
-  robot.run_for(120s);
+  robot.fail("loc", "a person", 120s);
   const Belief belief = robot.manager().knowledge().beliefs[StrategyId(1)];
   EXPECT_DOUBLE_EQ(belief.alpha, 10);
 }
@@ -490,46 +446,38 @@ TEST_P(LastResort, NothingIsLearnedOfIt) {
 TEST_P(LastResort, IsHeldByAPauseThatSaysSo) {
   TestRobot robot = driving(loc_lost());
   robot.order({1, "Ann", "", Pause{}});
-  EXPECT_EQ(robot.count("this holds back the last resort LocLost.stand_still"), 1u)
-      << transcript(robot);
-  robot["loc"].fault = "a person";
-  robot.run_for(10s);
-  EXPECT_FALSE(stands_still(robot)) << transcript(robot);
-  EXPECT_EQ(robot.count("LocLost.stand_still is held back: paused by a person"), 1u)
-      << transcript(robot);
-  robot.order({1, "Ann", "", Resume{}});
-  robot.run_for(1s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  EXPECT_EQ(robot.count("this holds back the last resort LocLost.stand_still"), 1u);
+  robot.fail("loc", "a person", 10s);
+  EXPECT_FALSE(stands_still(robot));
+  EXPECT_EQ(robot.count("LocLost.stand_still is held back: paused by a person"), 1u);
+  robot.order({1, "Ann", "", Resume{}}, 1s);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 TEST_P(LastResort, IsHeldByASilenceThatSaysSo) {
   TestRobot robot = driving(loc_lost());
   robot.order({1, "Ann", "", Silence{RuleId(0), 10s}});
-  EXPECT_EQ(robot.count("this holds back the last resort LocLost.stand_still"), 1u)
-      << transcript(robot);
-  robot["loc"].fault = "a person";
-  robot.run_for(8s);
-  EXPECT_FALSE(stands_still(robot)) << transcript(robot);
+  EXPECT_EQ(robot.count("this holds back the last resort LocLost.stand_still"), 1u);
+  robot.fail("loc", "a person", 8s);
+  EXPECT_FALSE(stands_still(robot));
   robot.run_for(4s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 TEST_P(LastResort, IsOnlySaidInADryRun) {
   Manager::Options options;
   options.autonomy = Autonomy::kAdvise;
   TestRobot robot = driving(loc_lost(), options);
-  robot["loc"].fault = "a person";
-  robot.run_for(10s);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  EXPECT_EQ(robot.count("stand_still, "), 1u) << transcript(robot);
+  robot.fail("loc", "a person", 10s);
+  EXPECT_TRUE(robot.asked.empty());
+  EXPECT_EQ(robot.count("stand_still, "), 1u);
 }
 
 TEST_P(LastResort, MayBeOrderedDespiteAnInterlock) {
   TestRobot robot = driving("INTERLOCK speed < 0.1\n" + loc_lost());
   robot.signal("speed", Value(1.0));
-  robot.order({1, "Ann", "", RunStrategy{StrategyId(1)}});
-  robot.run_for(1s);
-  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.order({1, "Ann", "", RunStrategy{StrategyId(1)}}, 1s);
+  EXPECT_TRUE(stands_still(robot));
 }
 
 }  // namespace

@@ -73,19 +73,15 @@ TEST(ALaunch, OfFiveThatSomebodyEndsIsNotStartedAgain) {
   }
   end_launcher(robot);
   robot.run_for(1min);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  EXPECT_EQ(robot.count("A.redeploy_a is held back: the launch of process 50 is being ended"), 1u)
-      << transcript(robot);
-  EXPECT_EQ(robot.count("is held back: a person ended the launch of process 50"), 5u)
-      << transcript(robot);
-  EXPECT_EQ(robot.count("a, b, c, d and e stay down: a person ended the launch of process 50"), 1u)
-      << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
+  EXPECT_EQ(robot.count("A.redeploy_a is held back: the launch of process 50 is being ended"), 1u);
+  EXPECT_EQ(robot.count("is held back: a person ended the launch of process 50"), 5u);
+  EXPECT_EQ(robot.count("a, b, c, d and e stay down: a person ended the launch of process 50"), 1u);
   for (const std::string& name : kFive) robot.start_by_hand(name);
   robot.run_for(Departures::kBack);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  robot.kill("b");
-  robot.run_for(2s);
-  EXPECT_TRUE(robot.works("b")) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
+  robot.kill("b", 2s);
+  EXPECT_TRUE(robot.works("b"));
 }
 
 // Ctrl-C on `ros2 run` in a terminal: its shell goes on, and no launch ends.
@@ -93,16 +89,14 @@ TEST(ALaunch, OfAShellThatGoesOnIsNotBroughtBackAgainstAPersonsWish) {
   TestRobot robot = launch_of_five();
   robot["c"].end();
   robot.tell(NodeVanished{"/c"});
-  robot.tell(ProcessSeen{robot.id("c"), ProcessState::kGone, robot["c"].pid, "exit code 0",
-                         Cause::kOrder});
-  robot.run_for(1min);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  EXPECT_EQ(robot.count("c stays down: "), 1u) << transcript(robot);
-  robot.start_by_hand("c");
-  robot.run_for(Departures::kBack + 5s);
-  robot.kill("c");
-  robot.run_for(5s);
-  EXPECT_TRUE(robot.works("c")) << transcript(robot);
+  robot.tell(
+      ProcessSeen{robot.id("c"), ProcessState::kGone, robot["c"].pid, "exit code 0", Cause::kOrder},
+      1min);
+  EXPECT_TRUE(robot.asked.empty());
+  EXPECT_EQ(robot.count("c stays down: "), 1u);
+  robot.start_by_hand("c", Departures::kBack + 5s);
+  robot.kill("c", 5s);
+  EXPECT_TRUE(robot.works("c"));
 }
 
 // e outlives its launch (nohup, a launcher of its own). From then on it is repaired as any other.
@@ -116,9 +110,9 @@ TEST(ALaunch, DoesNotTakeAlongWhatOutlivesIt) {
     if (is_killed) robot.kill("e");
     if (!is_killed) robot.stop("e");
     robot.run_for(1min);
-    EXPECT_TRUE(robot.works("e")) << transcript(robot);
-    EXPECT_EQ(robot.count("a, b, c and d stay down"), 1u) << transcript(robot);
-    EXPECT_EQ(robot.count("e stays down"), 0u) << transcript(robot);
+    EXPECT_TRUE(robot.works("e"));
+    EXPECT_EQ(robot.count("a, b, c and d stay down"), 1u);
+    EXPECT_EQ(robot.count("e stays down"), 0u);
   }
 }
 
@@ -147,12 +141,11 @@ RULE A
   for (const std::string name : {"a", "b", "c"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
   robot.run_for(Departures::kAlone + 1s);
-  robot["a"].fault = "redeploy";
-  robot.run_for(1min);
-  EXPECT_TRUE(robot.was_asked("a: stop process")) << transcript(robot);
-  EXPECT_TRUE(robot.was_asked("a: read parameter safe")) << transcript(robot);
-  EXPECT_EQ(robot.count("a stays down"), 0u) << transcript(robot);
-  EXPECT_TRUE(robot.works("a")) << transcript(robot);
+  robot.fail("a", "redeploy", 1min);
+  EXPECT_TRUE(robot.was_asked("a: stop process"));
+  EXPECT_TRUE(robot.was_asked("a: read parameter safe"));
+  EXPECT_EQ(robot.count("a stays down"), 0u);
+  EXPECT_TRUE(robot.works("a"));
 }
 
 // A strategy that only sets a parameter ends no process.
@@ -178,17 +171,15 @@ RULE Drift
   robot.discover();
   for (const std::string name : {"a", "b"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher, false});
-  robot.signal("drift", 0.0);
-  robot.run_for(6s);
-  robot.signal("drift", 2.0);
-  robot.run_for(500ms);
-  EXPECT_TRUE(robot.was_asked("a: set gain")) << transcript(robot);
+  robot.signal("drift", 0.0, 6s);
+  robot.signal("drift", 2.0, 500ms);
+  EXPECT_TRUE(robot.was_asked("a: set gain"));
   for (const std::string name : {"a", "b"}) robot.leave(name);
   for (const std::string name : {"a", "b"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
   robot.run_for(1min);
-  EXPECT_FALSE(robot.was_asked("a: start process")) << transcript(robot);
-  EXPECT_EQ(robot.count("a and b stay down: a person ended the launch"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("a: start process"));
+  EXPECT_EQ(robot.count("a and b stay down: a person ended the launch"), 1u);
 }
 
 // b and c run on after their launcher has ended. culprit ends b, and that is no end of the launch.
@@ -196,15 +187,13 @@ TEST(ALaunch, IsNotEndedByWhatCulpritEndsAfterItsLauncher) {
   TestRobot robot = launch_of_five();
   for (const std::string name : {"a", "d", "e"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
-  robot.leave("c");
-  robot.run_for(200ms);
+  robot.leave("c", 200ms);
   for (const std::string name : {"b", "c"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
   robot.run_for(Departures::kAlone + 1s);
   robot["b"].launcher = 0;
-  robot["b"].fault = "redeploy";
-  robot.run_for(30s);
-  EXPECT_TRUE(robot.works("b")) << transcript(robot);
+  robot.fail("b", "redeploy", 30s);
+  EXPECT_TRUE(robot.works("b"));
 }
 
 // A process that ignores SIGTERM is killed by its launcher.
@@ -212,19 +201,17 @@ TEST(ALaunch, ThatSomebodyEndsMayHaveToKill) {
   TestRobot robot = launch_of_five();
   for (const std::string name : {"a", "b", "c", "d"}) robot.leave(name);
   robot.run_for(10s);
-  robot.kill("e");
-  robot.run_for(100ms);
+  robot.kill("e", 100ms);
   end_launcher(robot);
   robot.run_for(1min);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
 }
 
 TEST(ALaunch, OfWhichOneAloneEndedIsCompletedAgain) {
   TestRobot robot = launch_of_five();
   const Time left = robot.now;
-  robot.leave("b");
-  robot.run_for(5s);
-  EXPECT_TRUE(robot.works("b")) << transcript(robot);
+  robot.leave("b", 5s);
+  EXPECT_TRUE(robot.works("b"));
   const auto chosen = std::ranges::find_if(robot.events, [](const Event& event) {
     return std::holds_alternative<StrategyChosen>(event.what);
   });
@@ -235,22 +222,18 @@ TEST(ALaunch, OfWhichOneAloneEndedIsCompletedAgain) {
 // on_exit=Shutdown(), or a quick person.
 TEST(ALaunch, ThatEndsSoonAfterACrashStaysDownAndSaysWhy) {
   TestRobot robot = launch_of_five();
-  robot.kill("a");
-  robot.run_for(500ms);
+  robot.kill("a", 500ms);
   for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
   robot.run_for(200ms);
   end_launcher(robot);
   robot.run_for(100ms);
-  EXPECT_EQ(robot.count("stay down: the launch of process 50 ended 500 ms after a crashed"), 1u)
-      << transcript(robot);
+  EXPECT_EQ(robot.count("stay down: the launch of process 50 ended 500 ms after a crashed"), 1u);
   EXPECT_TRUE(robot.manager().knowledge().departures.stays_down(robot.id("a")));
   const std::size_t asked = robot.asked.size();
   robot.run_for(1min);
-  EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
-  robot.order({1, "anna", "", Revive{}});
-  robot.run_for(1min);
-  for (const std::string name : {"b", "c", "d", "e"})
-    EXPECT_TRUE(robot.works(name)) << name << transcript(robot);
+  EXPECT_EQ(robot.asked.size(), asked);
+  robot.order({1, "anna", "", Revive{}}, 1min);
+  for (const std::string name : {"b", "c", "d", "e"}) EXPECT_TRUE(robot.works(name)) << name;
   EXPECT_FALSE(robot.manager().knowledge().departures.stays_down(robot.id("a")));
 }
 
@@ -267,16 +250,14 @@ TEST(ALaunch, HasEndedIfItsLauncherExitsWithAnErrorAfterItsNodes) {
       robot.tell(LauncherSeen{robot.id(name), kLauncher, true, true});
     robot.run_for(1min);
     for (const std::string& name : kFive)
-      EXPECT_TRUE(robot.manager().knowledge().departures.stays_down(robot.id(name)))
-          << name << transcript(robot);
+      EXPECT_TRUE(robot.manager().knowledge().departures.stays_down(robot.id(name))) << name;
   }
 }
 
 // on_exit=Shutdown(): its launcher ended the rest because one had broken.
 TEST(ALaunch, ThatEndsBecauseOneBrokeIsBroughtBackWithRevive) {
   TestRobot robot = launch_of_five(reviving());
-  robot.kill("a");
-  robot.run_for(50ms);
+  robot.kill("a", 50ms);
   for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
   robot.run_for(200ms);
   end_launcher(robot);
@@ -293,7 +274,7 @@ TEST(ALaunch, ThatEndsBecauseCulpritEndedOneIsBroughtBack) {
   for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
   end_launcher(robot);
   robot.run_for(1min);
-  for (const std::string& name : kFive) EXPECT_TRUE(robot.works(name)) << name << transcript(robot);
+  for (const std::string& name : kFive) EXPECT_TRUE(robot.works(name)) << name;
 }
 
 // It had nothing left to run.
@@ -302,13 +283,11 @@ TEST(ALaunch, OfOneThatCrashedEndsWithItAndItIsBroughtBack) {
   for (const std::string name : {"b", "c", "d", "e"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
   robot.kill("a");
-  robot.tell(LauncherSeen{robot.id("a"), kLauncher, true});
-  robot.run_for(5s);
-  EXPECT_TRUE(robot.works("a")) << transcript(robot);
-  EXPECT_EQ(robot.count("stays down"), 0u) << transcript(robot);
-  robot.kill("a");
-  robot.run_for(20s);
-  EXPECT_TRUE(robot.works("a")) << "it stands in for nothing any more" << transcript(robot);
+  robot.tell(LauncherSeen{robot.id("a"), kLauncher, true}, 5s);
+  EXPECT_TRUE(robot.works("a"));
+  EXPECT_EQ(robot.count("stays down"), 0u);
+  robot.kill("a", 20s);
+  EXPECT_TRUE(robot.works("a")) << "it stands in for nothing any more";
 }
 
 // It ran others, which the rules do not name.
@@ -317,9 +296,8 @@ TEST(ALaunch, OfOthersThatEndsSoonAfterACrashStaysDown) {
   for (const std::string name : {"b", "c", "d", "e"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
   robot.kill("a");
-  robot.tell(LauncherSeen{robot.id("a"), kLauncher, true, false, true});
-  robot.run_for(1min);
-  EXPECT_EQ(robot.count("a stays down: the launch of process 50"), 1u) << transcript(robot);
+  robot.tell(LauncherSeen{robot.id("a"), kLauncher, true, false, true}, 1min);
+  EXPECT_EQ(robot.count("a stays down: the launch of process 50"), 1u);
 }
 
 // A node in Python that fails with exit code 1, as it also may on Ctrl-C; with a good-bye or without one.
@@ -337,10 +315,9 @@ TEST(ALaunch, OfNodesInPythonThatSomebodyEndsIsNotStartedAgain) {
     robot.run_for(300ms);
     end_launcher(robot);
     robot.run_for(1min);
-    EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+    EXPECT_TRUE(robot.asked.empty());
     EXPECT_EQ(robot.count("a, b, c, d and e stay down: a person ended the launch of process 50"),
-              1u)
-        << transcript(robot);
+              1u);
   }
 }
 
@@ -353,12 +330,10 @@ TEST(ALaunch, OfOneNodeInPythonThatFailsStaysDownInDoubtUnlessRevived) {
         robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
       fail_as_python(robot, "a", says_good_bye);
       robot.run_for(200ms);
-      robot.tell(LauncherSeen{robot.id("a"), kLauncher, true});
-      robot.run_for(1min);
-      EXPECT_EQ(robot.works("a"), revives) << transcript(robot);
+      robot.tell(LauncherSeen{robot.id("a"), kLauncher, true}, 1min);
+      EXPECT_EQ(robot.works("a"), revives);
       EXPECT_EQ(robot.count("a stays down: the launch of process 50 ended 200 ms after a crashed"),
-                revives ? 0u : 1u)
-          << transcript(robot);
+                revives ? 0u : 1u);
     }
   }
 }
@@ -369,7 +344,7 @@ TEST(ALaunch, OfWhichANodeInPythonFailsIsCompletedAgain) {
     TestRobot robot = launch_of_five();
     fail_as_python(robot, "b", says_good_bye);
     robot.run_for(5s);
-    EXPECT_TRUE(robot.works("b")) << transcript(robot);
+    EXPECT_TRUE(robot.works("b"));
   }
 }
 
@@ -379,21 +354,19 @@ TEST(ALaunch, TakesWhatStandsInForOneOfItAlong) {
   for (const Duration after : {Duration(500ms), Duration(3s), Duration(8s), Duration(30s)}) {
     TestRobot robot = launch_of_five();
     const auto& departures = robot.manager().knowledge().departures;
-    robot.kill("a");
-    robot.run_for(after);
+    robot.kill("a", after);
     for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
     robot.run_for(300ms);
     EXPECT_EQ(departures.to_end(robot.id("a")), 0) << "its launcher runs";
     end_launcher(robot);
     robot.run_for(5s);
     for (const std::string& name : kFive)
-      EXPECT_TRUE(departures.stays_down(robot.id(name))) << name << transcript(robot);
-    EXPECT_EQ(departures.to_end(robot.id("a")), robot["a"].pid) << transcript(robot);
+      EXPECT_TRUE(departures.stays_down(robot.id(name))) << name;
+    EXPECT_EQ(departures.to_end(robot.id("a")), robot["a"].pid);
     const std::size_t asked = robot.asked.size();
-    robot.leave("a");
-    robot.run_for(1min);
-    EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
-    EXPECT_EQ(robot.count("none helped"), 0u) << "none was tried" << transcript(robot);
+    robot.leave("a", 1min);
+    EXPECT_EQ(robot.asked.size(), asked);
+    EXPECT_EQ(robot.count("none helped"), 0u) << "none was tried";
     EXPECT_TRUE(departures.started().empty());
   }
 }
@@ -403,18 +376,15 @@ TEST(ALaunch, OfTwoOfWhichOneWasReplacedIsEndedByAPerson) {
   TestRobot robot = launch_of_five();
   for (const std::string name : {"c", "d", "e"})
     robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
-  robot.kill("a");
-  robot.run_for(3s);
-  ASSERT_TRUE(robot.works("a")) << transcript(robot);
+  robot.kill("a", 3s);
+  ASSERT_TRUE(robot.works("a"));
   const std::size_t asked = robot.asked.size();
   robot.leave("b");
   robot.run_for(8s);  // its launcher takes its time
-  EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
-  robot.tell(LauncherSeen{robot.id("b"), kLauncher, true});
-  robot.run_for(1min);
-  EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
-  EXPECT_EQ(robot.count("a and b stay down: a person ended the launch of process 50"), 1u)
-      << transcript(robot);
+  EXPECT_EQ(robot.asked.size(), asked);
+  robot.tell(LauncherSeen{robot.id("b"), kLauncher, true}, 1min);
+  EXPECT_EQ(robot.asked.size(), asked);
+  EXPECT_EQ(robot.count("a and b stay down: a person ended the launch of process 50"), 1u);
   EXPECT_FALSE(robot.manager().knowledge().departures.stays_down(robot.id("c")));
 }
 
@@ -425,15 +395,14 @@ TEST(ALaunch, EndsAfterItsLastProcessCrashedAndItsComponentsRunOn) {
     for (const std::string name : {"c", "d", "e"})
       robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
     for (const std::string name : {"a", "b"}) {
-      robot.kill(name);
-      robot.run_for(name == "a" ? 3s : takes);
+      robot.kill(name, name == "a" ? 3s : takes);
     }
     robot.tell(LauncherSeen{robot.id("b"), kLauncher, true});
     robot.tell(LauncherSeen{robot.id("a"), kLauncher, true, false, true});  // b ran then
     robot.run_for(1min);
-    EXPECT_EQ(robot.count("stay"), 0u) << transcript(robot);
+    EXPECT_EQ(robot.count("stay"), 0u);
     for (const std::string name : {"a", "b"}) {
-      EXPECT_TRUE(robot.works(name)) << name << transcript(robot);
+      EXPECT_TRUE(robot.works(name)) << name;
       EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id(name)), 0);
     }
   }
@@ -443,14 +412,11 @@ TEST(ALaunch, EndsAfterItsLastProcessCrashedAndItsComponentsRunOn) {
 TEST(ALaunch, RunsOnIfItsLauncherCrashes) {
   for (const bool is_known : {true, false}) {
     TestRobot robot = launch_of_five();
-    robot.kill("a");
-    robot.run_for(3s);
-    robot.tell(LauncherSeen{robot.id("b"), kLauncher, true, is_known});
-    robot.run_for(1min);
-    EXPECT_EQ(robot.count("stay"), 0u) << transcript(robot);
-    robot.kill("b");
-    robot.run_for(5s);
-    EXPECT_TRUE(robot.works("b")) << transcript(robot);
+    robot.kill("a", 3s);
+    robot.tell(LauncherSeen{robot.id("b"), kLauncher, true, is_known}, 1min);
+    EXPECT_EQ(robot.count("stay"), 0u);
+    robot.kill("b", 5s);
+    EXPECT_TRUE(robot.works("b"));
     EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), 0);
   }
 }
@@ -459,14 +425,13 @@ TEST(ALaunch, RunsOnIfItsLauncherCrashes) {
 TEST(ALaunch, ThatEndsWhileOneOfItIsBroughtBackIsNotStartedAgain) {
   TestRobot robot = launch_of_five();
   robot["a"].start_time = 4s;
-  robot.kill("a");
-  robot.run_for(2500ms);
+  robot.kill("a", 2500ms);
   for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
   end_launcher(robot);
   robot.run_for(100ms);
-  EXPECT_EQ(robot.count("A.redeploy_a is abandoned: a stays down"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("A.redeploy_a is abandoned: a stays down"), 1u);
   robot.run_for(1min);
-  EXPECT_EQ(robot.count_asked("start process"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("start process"), 1u);
   EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), robot["a"].pid);
 }
 
@@ -481,10 +446,9 @@ TEST(ALaunch, IsNotTakenForAnEarlierOneWithItsNumber) {
     robot.tell(LauncherSeen{robot.id(name), kLauncher, false});
   }
   robot.run_for(15s);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  robot.kill("a");
-  robot.run_for(5s);
-  EXPECT_TRUE(robot.works("a")) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
+  robot.kill("a", 5s);
+  EXPECT_TRUE(robot.works("a"));
 }
 
 // Events of an earlier culprit count, until a person orders otherwise.
@@ -506,10 +470,9 @@ TEST(ALaunch, ThatWasEndedStaysDownForTheNextCulprit) {
   next->remember(known);
   robot.replace_manager(std::move(next));
   robot.run_for(1min);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  robot.order({1, "anna", "", Revive{}});
-  robot.run_for(1min);
-  EXPECT_TRUE(robot.works("c")) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
+  robot.order({1, "anna", "", Revive{}}, 1min);
+  EXPECT_TRUE(robot.works("c"));
 }
 
 // A process that a killed culprit had started stands in for a launch that has ended since.
@@ -531,7 +494,7 @@ TEST(ALaunch, ThatEndedWhileNoCulpritRanTakesItsStandInAlong) {
       robot.tell(ProcessSeen{robot.id("b"), ProcessState::kRunning, robot["b"].pid, ""});
     robot.run_for(3s);
     const auto& departures = robot.manager().knowledge().departures;
-    EXPECT_EQ(departures.to_end(robot.id("a")), are_others_there ? 0 : 400) << transcript(robot);
+    EXPECT_EQ(departures.to_end(robot.id("a")), are_others_there ? 0 : 400);
     ASSERT_EQ(departures.started().size(), 1u);
     EXPECT_GT(robot.now - departures.started().front().since, 1min);
   }
@@ -540,17 +503,13 @@ TEST(ALaunch, ThatEndedWhileNoCulpritRanTakesItsStandInAlong) {
 TEST(ALaunch, WhatCulpritStartedIsEndedOnAPersonsOrder) {
   TestRobot robot = launch_of_five();
   robot.order({1, "anna", "", EndStarted{}});
-  EXPECT_EQ(robot.count("nothing runs that culprit started"), 1u) << transcript(robot);
-  robot.kill("a");
-  robot.run_for(5s);
-  robot.order({2, "anna", "", EndStarted{}});
-  robot.run_for(100ms);
-  EXPECT_EQ(robot.count("a stays down: a person ended the processes that culprit had started"), 1u)
-      << transcript(robot);
+  EXPECT_EQ(robot.count("nothing runs that culprit started"), 1u);
+  robot.kill("a", 5s);
+  robot.order({2, "anna", "", EndStarted{}}, 100ms);
+  EXPECT_EQ(robot.count("a stays down: a person ended the processes that culprit had started"), 1u);
   EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), robot["a"].pid);
-  robot.leave("a");
-  robot.run_for(1min);
-  EXPECT_EQ(robot.count_asked("start process"), 1u) << transcript(robot);
+  robot.leave("a", 1min);
+  EXPECT_EQ(robot.count_asked("start process"), 1u);
   EXPECT_EQ(robot.manager().knowledge().departures.stays_down(robot.id("b")), false);
 }
 
@@ -559,10 +518,9 @@ TEST(ALaunch, IsNotInTheWayOfWhatItDidNotStart) {
   robot.tell(LauncherSeen{robot.id("e"), kLauncher + 1, false});
   robot.leave("a");
   robot.leave("b");
-  robot.kill("e");
-  robot.run_for(1s);
-  EXPECT_TRUE(robot.was_asked("e: start process")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("a:")) << transcript(robot);
+  robot.kill("e", 1s);
+  EXPECT_TRUE(robot.was_asked("e: start process"));
+  EXPECT_FALSE(robot.was_asked("a:"));
 }
 
 }  // namespace

@@ -16,54 +16,65 @@ std::string camera_with(const std::string& clause) {
 }
 
 // It comes up unconfigured.
-TestRobot robot_of(const std::string& rules, Duration activates_itself_after = {}) {
-  TestRobot robot(rules);
+TestRobot robot_of(const std::string& rules, Duration activates_itself_after = {},
+                   Duration quiet_downstream = {}, Duration seen_for = 2s) {
+  Manager::Options options;
+  options.governor.limits.quiet_downstream = quiet_downstream;
+  TestRobot robot(rules, std::make_unique<BayesPlanner>(), options);
   auto& added = robot.add("camera", {}, "/rgb");
   added.state_at_start = Lifecycle::kUnconfigured;
   added.activates_itself_after = activates_itself_after;
-  robot.discover();
-  robot.run_for(2s);
+  robot.discover(seen_for);
   return robot;
+}
+
+// Somebody else does.
+void change_state(TestRobot& robot, Lifecycle state) {
+  robot["camera"].state = state;
+  robot.tell(LifecycleRead{ComponentId(0), state});
+}
+
+// It works again so long after it was killed.
+void expect_recovery(TestRobot& robot, Duration time) {
+  robot.kill("camera", time);
+  EXPECT_TRUE(robot.works("camera"));
+}
+
+// It is killed that often, and each time one start is enough.
+void expect_one_start_each(TestRobot& robot, std::size_t kills) {
+  for (std::size_t starts = 1; starts <= kills; ++starts) {
+    expect_recovery(robot, 60s);
+    EXPECT_EQ(robot.count_asked("camera: start"), starts);
+  }
 }
 
 TEST(Lifecycles, WhatActivatesItselfByDeclarationIsNeverToldTo) {
   TestRobot robot = robot_of(camera_with("LIFECYCLE self"), 6s);
-  robot.kill("camera");
-  robot.run_for(20s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+  expect_recovery(robot, 20s);
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u);
+  EXPECT_FALSE(robot.was_asked("camera: configure"));
 }
 
 TEST(Lifecycles, ADeclaredDriverThatNeverComesIsAFailureThatSaysSo) {
   TestRobot robot = robot_of(camera_with("LIFECYCLE launcher"));
-  robot.kill("camera");
-  robot.run_for(40s);
-  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
-  EXPECT_GE(robot.count("its driver did not bring it up (LIFECYCLE)"), 1u) << transcript(robot);
+  robot.kill("camera", 40s);
+  EXPECT_FALSE(robot.was_asked("camera: configure"));
+  EXPECT_GE(robot.count("its driver did not bring it up (LIFECYCLE)"), 1u);
 }
 
 TEST(Lifecycles, AManagedNodeIsNotWaitedFor) {
   TestRobot robot = robot_of(camera_with("LIFECYCLE managed"));
-  robot.kill("camera");
-  robot.run_for(1500ms);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  expect_recovery(robot, 1500ms);
 }
 
 // Its driver is unknown: culprit activates it after the impact, and its own timer then fails.
 TEST(Lifecycles, ANodeThatActivatesItselfCrashesOnceAtMost) {
   TestRobot robot = robot_of(camera_with(""), 4s);
-  robot.kill("camera");
-  robot.run_for(60s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: start"), 2u) << transcript(robot);
-  for (int again = 0; again < 2; ++again) {
-    robot.kill("camera");
-    robot.run_for(60s);
-    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  }
-  EXPECT_EQ(robot.count_asked("camera: start"), 4u) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: configure"), 1u) << transcript(robot);
+  expect_recovery(robot, 60s);
+  EXPECT_EQ(robot.count_asked("camera: start"), 2u);
+  for (int again = 0; again < 2; ++again) expect_recovery(robot, 60s);
+  EXPECT_EQ(robot.count_asked("camera: start"), 4u);
+  EXPECT_EQ(robot.count_asked("camera: configure"), 1u);
 }
 
 std::string active_camera_with(const std::string& clause) {
@@ -75,37 +86,25 @@ std::string active_camera_with(const std::string& clause) {
 // Its driver was not seen, for culprit came later.
 TEST(Lifecycles, ANodeThatActivatesItselfWithinTheImpactNeverCrashes) {
   TestRobot robot = robot_of(camera_with(""), 1500ms);
-  for (int kills = 1; kills <= 3; ++kills) {
-    robot.kill("camera");
-    robot.run_for(60s);
-    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-    EXPECT_EQ(robot.count_asked("camera: start"), static_cast<std::size_t>(kills))
-        << transcript(robot);
-  }
-  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("camera: activate")) << transcript(robot);
+  expect_one_start_each(robot, 3);
+  EXPECT_FALSE(robot.was_asked("camera: configure"));
+  EXPECT_FALSE(robot.was_asked("camera: activate"));
 }
 
 // A rule says that it must be active: culprit brings it there at once, until it knows better.
 TEST(Lifecycles, ANodeThatARuleWantsActiveCrashesOnceAtMostToo) {
   TestRobot robot = robot_of(active_camera_with(""), 4s);
-  for (int kills = 1; kills <= 3; ++kills) {
-    robot.kill("camera");
-    robot.run_for(60s);
-    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  }
-  EXPECT_EQ(robot.count_asked("camera: start"), 4u) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: configure"), 1u) << transcript(robot);
+  for (int kills = 1; kills <= 3; ++kills) expect_recovery(robot, 60s);
+  EXPECT_EQ(robot.count_asked("camera: start"), 4u);
+  EXPECT_EQ(robot.count_asked("camera: configure"), 1u);
 }
 
 TEST(Lifecycles, ANodeThatStartsSlowlyIsGivenAsLongAgain) {
   TestRobot robot = robot_of(camera_with(""), 5s);
   robot["camera"].start_time = 6s;
-  robot.kill("camera");
-  robot.run_for(60s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+  expect_recovery(robot, 60s);
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u);
+  EXPECT_FALSE(robot.was_asked("camera: configure"));
 }
 
 // It is there after 300 ms.
@@ -115,10 +114,10 @@ TEST(Lifecycles, ANodeThatNobodyDrivesIsActivatedWhenTheImpactIsOver) {
   while (!robot.was_asked("camera: start") && robot.now < Time(10s)) robot.run_for(10ms);
   const Time started = robot.now;
   while (!robot.was_asked("camera: configure") && robot.now < Time(20s)) robot.run_for(10ms);
-  EXPECT_GE(robot.now - started, 1900ms) << transcript(robot);
-  EXPECT_LE(robot.now - started, 2200ms) << transcript(robot);
+  EXPECT_GE(robot.now - started, 1900ms);
+  EXPECT_LE(robot.now - started, 2200ms);
   robot.run_for(1s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera"));
   const Time killed = robot.now;
   robot.kill("camera");
   while (!robot.works("camera") && robot.now < killed + 10s) robot.run_for(100ms);
@@ -131,16 +130,14 @@ TEST(Lifecycles, ADriverThatShowsUpLateIsLeftAlone) {
   robot.kill("camera");
   while (!robot.was_asked("camera: start") && robot.now < Time(10s)) robot.run_for(10ms);
   robot.run_for(1s);
-  ASSERT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
-  robot["camera"].state = Lifecycle::kInactive;
-  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  ASSERT_FALSE(robot.was_asked("camera: configure"));
+  change_state(robot, Lifecycle::kInactive);
   robot.run_for(3s);
   EXPECT_FALSE(robot.was_asked("camera: activate")) << "whoever configured it goes on";
-  robot["camera"].state = Lifecycle::kActive;
-  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  change_state(robot, Lifecycle::kActive);
   robot.run_for(5s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("camera: activate")) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera"));
+  EXPECT_FALSE(robot.was_asked("camera: activate"));
   EXPECT_EQ(robot.manager().knowledge().components[ComponentId(0)].coming_up.driver,
             ComingUp::Driver::kOther);
 }
@@ -149,10 +146,8 @@ TEST(Lifecycles, ADriverThatShowsUpLateIsLeftAlone) {
 TEST(Lifecycles, WhatIsWronglyDeclaredManagedIsToldWithWhatToDeclare) {
   for (const Duration after : {12ms, 400ms}) {
     TestRobot robot = robot_of(camera_with("LIFECYCLE managed"), after);
-    robot.kill("camera");
-    robot.run_for(5s);
-    EXPECT_GE(robot.count("does it activate itself? Then it is LIFECYCLE self"), 1u)
-        << transcript(robot);
+    robot.kill("camera", 5s);
+    EXPECT_GE(robot.count("does it activate itself? Then it is LIFECYCLE self"), 1u);
   }
 }
 
@@ -160,11 +155,9 @@ TEST(Lifecycles, WhatIsWronglyDeclaredManagedIsToldWithWhatToDeclare) {
 TEST(Lifecycles, ANodeThatLeavesTheGraphBeforeItsProcessEndsCrashesOnceAtMostToo) {
   TestRobot robot = robot_of(camera_with(""), 4s);
   robot["camera"].leaves_before_it_ends = true;
-  robot.kill("camera");
-  robot.run_for(60s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: start"), 2u) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: configure"), 1u) << transcript(robot);
+  expect_recovery(robot, 60s);
+  EXPECT_EQ(robot.count_asked("camera: start"), 2u);
+  EXPECT_EQ(robot.count_asked("camera: configure"), 1u);
 }
 
 TEST(Lifecycles, ANodeThatWasSeenToActivateItselfIsWaitedFor) {
@@ -172,28 +165,21 @@ TEST(Lifecycles, ANodeThatWasSeenToActivateItselfIsWaitedFor) {
   auto& added = robot.add("camera", {}, "/rgb");
   added.state = added.state_at_start = Lifecycle::kUnconfigured;
   added.activates_itself_after = 3s;
-  robot.discover();
-  robot.run_for(2900ms);
-  added.state = Lifecycle::kActive;
-  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  robot.discover(2900ms);
+  change_state(robot, Lifecycle::kActive);
   robot.run_for(5s);
-  robot.kill("camera");
-  robot.run_for(30s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+  expect_recovery(robot, 30s);
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u);
+  EXPECT_FALSE(robot.was_asked("camera: configure"));
 }
 
 TEST(Lifecycles, AnObservedDriverThatDoesNotComeAgainIsReplaced) {
   TestRobot robot = robot_of(camera_with(""), 1s);
-  robot.kill("camera");
-  robot.run_for(10s);
-  ASSERT_TRUE(robot.works("camera")) << transcript(robot);
+  robot.kill("camera", 10s);
+  ASSERT_TRUE(robot.works("camera"));
   robot["camera"].activates_itself_after = {};
-  robot.kill("camera");
-  robot.run_for(15s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_TRUE(robot.was_asked("camera: activate")) << transcript(robot);
+  expect_recovery(robot, 15s);
+  EXPECT_TRUE(robot.was_asked("camera: activate"));
   const Time killed = robot.now;
   robot.kill("camera");
   while (!robot.works("camera") && robot.now < killed + 10s) robot.run_for(100ms);
@@ -205,11 +191,10 @@ TEST(Lifecycles, ARuleThatItMustBeActiveOutweighsThatOthersDeactivatedIt) {
       robot_of(camera_with("LIFECYCLE managed") +
                "RULE Idle\n  POLICIES WARNING FOR 30s\n  TRIGGER lifecycle(camera) != \"active\"\n"
                "    STRATEGY activate 90 10\n      ADAPTATION camera activate 5\n");
-  robot["camera"].state = Lifecycle::kInactive;
-  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  change_state(robot, Lifecycle::kInactive);
   robot.run_for(10s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_TRUE(robot.was_asked("camera: start")) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera"));
+  EXPECT_TRUE(robot.was_asked("camera: start"));
 }
 
 TEST(Lifecycles, WhatARestartReachedIsWhatIsIntended) {
@@ -218,13 +203,10 @@ TEST(Lifecycles, WhatARestartReachedIsWhatIsIntended) {
       "  POLICIES ERROR\n  TRIGGER age(/rgb) > 350ms\n    STRATEGY restart 90 10\n"
       "      ADAPTATION camera restart 5\n    STRATEGY redeploy 60 10\n"
       "      ADAPTATION camera redeploy 10\n");
-  robot["camera"].state = Lifecycle::kInactive;
-  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  change_state(robot, Lifecycle::kInactive);
   robot.run_for(10s);
-  ASSERT_TRUE(robot.works("camera")) << transcript(robot);
-  robot.kill("camera");
-  robot.run_for(10s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  ASSERT_TRUE(robot.works("camera"));
+  expect_recovery(robot, 10s);
 }
 
 TEST(Lifecycles, AnErrorInOnActivateEndsTheAttemptAtOnce) {
@@ -233,95 +215,64 @@ TEST(Lifecycles, AnErrorInOnActivateEndsTheAttemptAtOnce) {
       "  POLICIES ERROR\n  TRIGGER age(/rgb) > 350ms\n    STRATEGY activate 90 10\n"
       "      ADAPTATION camera activate 5\n");
   robot["camera"].fails_to_activate = true;
-  robot["camera"].state = Lifecycle::kInactive;
-  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  change_state(robot, Lifecycle::kInactive);
   robot.run_for(1500ms);
-  EXPECT_GE(robot.count("it fell back to unconfigured when asked to activate"), 1u)
-      << transcript(robot);
-  EXPECT_GE(robot.count("camera: inactive again"), 1u) << transcript(robot);
+  EXPECT_GE(robot.count("it fell back to unconfigured when asked to activate"), 1u);
+  EXPECT_GE(robot.count("camera: inactive again"), 1u);
 }
 
 TEST(Lifecycles, AGoalEndsWithItsProcess) {
   TestRobot robot = robot_of(camera_with("LIFECYCLE self"));
+  robot.kill("camera", 3s);
+  ASSERT_EQ(robot.count_asked("camera: start"), 1u);
   robot.kill("camera");
-  robot.run_for(3s);
-  ASSERT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
-  robot.kill("camera");
-  EXPECT_GE(robot.count("it is not there any more: killed by signal 9"), 1u) << transcript(robot);
+  EXPECT_GE(robot.count("it is not there any more: killed by signal 9"), 1u);
 }
 
 TEST(Lifecycles, AStartIsWaitedForWhileItsProcessRuns) {
   TestRobot robot = robot_of(camera_with("LIFECYCLE managed"));
   robot["camera"].start_time = 45s;
-  for (int kills = 1; kills <= 2; ++kills) {
-    robot.kill("camera");
-    robot.run_for(60s);
-    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-    EXPECT_EQ(robot.count_asked("camera: start"), static_cast<std::size_t>(kills))
-        << transcript(robot);
-  }
+  expect_one_start_each(robot, 2);
 }
 
 // ---- of a live robot, where nodes have to find each other (Knowledge::finding)
 
 TestRobot live_robot_of(const std::string& rules, Duration activates_itself_after = {}) {
-  Manager::Options options;
-  options.governor.limits.quiet_downstream = 3500ms;
-  TestRobot robot(rules, std::make_unique<BayesPlanner>(), options);
-  auto& added = robot.add("camera", {}, "/rgb");
-  added.state_at_start = Lifecycle::kUnconfigured;
-  added.activates_itself_after = activates_itself_after;
-  robot.discover();
-  robot.run_for(6s);
-  return robot;
+  return robot_of(rules, activates_itself_after, 3500ms, 6s);
 }
 
 TEST(LiveLifecycles, ANodeThatActivatesItselfIsWatchedFirstAndNeverCrashes) {
   for (const std::string& rules : {camera_with(""), active_camera_with("")}) {
     TestRobot robot = live_robot_of(rules, 4s);
-    for (int kills = 1; kills <= 3; ++kills) {
-      robot.kill("camera");
-      robot.run_for(60s);
-      EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-      EXPECT_EQ(robot.count_asked("camera: start"), static_cast<std::size_t>(kills))
-          << transcript(robot);
-    }
-    EXPECT_FALSE(robot.was_asked("camera: activate")) << transcript(robot);
+    expect_one_start_each(robot, 3);
+    EXPECT_FALSE(robot.was_asked("camera: activate"));
   }
 }
 
 TEST(LiveLifecycles, ANodeThatNobodyDrivesIsActivatedAfterTheWatchAndAtOnceTheNextTime) {
   TestRobot robot = live_robot_of(active_camera_with(""));
-  robot.kill("camera");
-  robot.run_for(12s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  expect_recovery(robot, 12s);
   robot.run_for(60s);
-  robot.kill("camera");
-  robot.run_for(3s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  expect_recovery(robot, 3s);
 }
 
 // Meanwhile one rule sees it unconfigured, and another one misses its topic.
 TEST(LiveLifecycles, ANodeThatActivatedItselfBeforeIsLeftToThatAlsoWhenAPersonStartsIt) {
   TestRobot robot = live_robot_of(active_camera_with(""), 4s);
+  robot.kill("camera", 60s);
   robot.kill("camera");
-  robot.run_for(60s);
-  robot.kill("camera");
-  robot.start_by_hand("camera");
-  robot.run_for(20s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
+  robot.start_by_hand("camera", 20s);
+  EXPECT_TRUE(robot.works("camera"));
+  EXPECT_FALSE(robot.was_asked("camera: configure"));
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u);
 }
 
 TEST(LiveLifecycles, ANodeThatAnswersLateWhileItLoadsIsAskedAgain) {
   TestRobot robot = live_robot_of(camera_with("LIFECYCLE managed"));
   robot["camera"].answers_after_start = 6s;
-  robot.kill("camera");
-  robot.run_for(20s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("failed"), 0u) << transcript(robot);
+  expect_recovery(robot, 20s);
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u);
+  EXPECT_EQ(robot.count("failed"), 0u);
 }
 
 }  // namespace

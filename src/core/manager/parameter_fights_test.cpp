@@ -66,9 +66,9 @@ struct Charged {
 TEST_P(ParameterFight, EndsWithTheValueOfTheMoreCriticalRule) {
   Fight fight(GetParam()(), "WARNING");
   fight.run_for(300s);
-  EXPECT_LE(fight.changes(), 3u) << transcript(fight.robot);
-  EXPECT_EQ(fight.robot["cam"].parameters["gain"], Value(3.0)) << transcript(fight.robot);
-  EXPECT_EQ(fight.robot.count("TooNoisy is exhausted"), 1u) << transcript(fight.robot);
+  EXPECT_LE(fight.changes(), 3u);
+  EXPECT_EQ(fight.robot["cam"].parameters["gain"], Value(3.0));
+  EXPECT_EQ(fight.robot.count("TooNoisy is exhausted"), 1u);
 }
 
 // The failure is back before the other's change was read back.
@@ -82,8 +82,8 @@ TEST_P(ParameterFight, IsSeenHoweverSoonTheFailureIsBack) {
     fight.robot.signal("noise", gain);
   };
   fight.run_for(300s);
-  EXPECT_LE(fight.changes(), 3u) << transcript(fight.robot);
-  EXPECT_EQ(fight.robot.count("TooNoisy is exhausted"), 1u) << transcript(fight.robot);
+  EXPECT_LE(fight.changes(), 3u);
+  EXPECT_EQ(fight.robot.count("TooNoisy is exhausted"), 1u);
 }
 
 // Its process keeps no parameters: a new process makes the memory of the old one's values void.
@@ -98,16 +98,16 @@ TEST_P(ParameterFight, BeginsAnewWithTheProcess) {
   fight.run_for(90s);
   fight.robot["cam"].parameters["gain"] = Value(2.7);
   fight.run_for(20s);
-  EXPECT_GT(fight.changes(), before) << transcript(fight.robot);
+  EXPECT_GT(fight.changes(), before);
 }
 
 TEST_P(ParameterFight, IsNotWhatComesAgainMuchLater) {
   Charged day(GetParam()());
   for (int shift = 0; shift < 4; ++shift) {
     day.run_for(1h, 1.0);
-    EXPECT_TRUE(day.has_power()) << shift << transcript(day.robot);
+    EXPECT_TRUE(day.has_power()) << shift;
     day.run_for(10min, 0.05);
-    EXPECT_FALSE(day.has_power()) << shift << transcript(day.robot);
+    EXPECT_FALSE(day.has_power()) << shift;
   }
 }
 

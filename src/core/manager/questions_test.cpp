@@ -27,10 +27,7 @@ struct Navigation {
     robot.discover();
     robot.tell(EndpointAppeared{"/nav", EndpointKind::kPublisher, "/cmd"});
   }
-  void answers_at_first() {
-    robot.tell(Probed{robot.id("map"), true});
-    robot.run_for(5s);
-  }
+  void answers_at_first() { robot.tell(Probed{robot.id("map"), true}, 5s); }
   // It hangs, so that navigation does nothing either.
   void hang() {
     robot["map"].answers = false;
@@ -68,13 +65,12 @@ TEST(Questions, ASupplierThatHangsIsFoundWithoutARuleAndItsConsumerIsLeftAlone) 
   navigation.hang();
   TestRobot& robot = navigation.robot;
   robot.run_for(30s);
-  EXPECT_TRUE(robot.was_asked("map: ask whether it answers")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("nav: stop process")) << transcript(robot);
-  EXPECT_EQ(robot.count("Nav waits: it depends on map, which was asked whether it answers"), 1u)
-      << transcript(robot);
-  EXPECT_EQ(robot.count("Nav waits: it depends on map, which hangs"), 1u) << transcript(robot);
-  EXPECT_LE(robot.count_asked("map: ask"), 16u) << "once per 2 s at most" << transcript(robot);
-  EXPECT_EQ(answers_in(robot), std::vector<std::string>{"map did not answer"}) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("map: ask whether it answers"));
+  EXPECT_FALSE(robot.was_asked("nav: stop process"));
+  EXPECT_EQ(robot.count("Nav waits: it depends on map, which was asked whether it answers"), 1u);
+  EXPECT_EQ(robot.count("Nav waits: it depends on map, which hangs"), 1u);
+  EXPECT_LE(robot.count_asked("map: ask"), 16u) << "once per 2 s at most";
+  EXPECT_EQ(answers_in(robot), std::vector<std::string>{"map did not answer"});
 }
 
 // It was busy for a while, and its consumer has a fault of its own.
@@ -85,32 +81,31 @@ TEST(Questions, AreAskedAgainUntilThereIsAnAnswer) {
   robot["nav"].fault = "redeploy";
   robot["map"].answers = false;
   robot.run_for(10s);
-  EXPECT_FALSE(robot.was_asked("nav: stop process")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("nav: stop process"));
   robot["map"].answers = true;
   robot.run_for(4s);
-  EXPECT_EQ(robot.count_asked("nav: stop process"), 1u) << transcript(robot);
-  EXPECT_TRUE(robot.works("nav")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("nav: stop process"), 1u);
+  EXPECT_TRUE(robot.works("nav"));
 }
 
 TEST(Questions, ThatAreAnsweredDelayARepairByNoMoreThanTheAnswer) {
   Navigation navigation;
   navigation.answers_at_first();
   TestRobot& robot = navigation.robot;
-  robot["nav"].fault = "redeploy";
-  robot.run_for(1s);
-  EXPECT_EQ(robot.count_asked("map: ask"), 1u) << transcript(robot);
+  robot.fail("nav", "redeploy", 1s);
+  EXPECT_EQ(robot.count_asked("map: ask"), 1u);
   std::optional<Time> detected;
   std::optional<Time> chosen;
   for (const Event& event : robot.events) {
     if (std::holds_alternative<FailureDetected>(event.what) && !detected) detected = event.at;
     if (std::holds_alternative<StrategyChosen>(event.what) && !chosen) chosen = event.at;
   }
-  ASSERT_TRUE(detected && chosen) << transcript(robot);
-  EXPECT_EQ(*chosen - *detected, 5ms) << transcript(robot);
+  ASSERT_TRUE(detected && chosen);
+  EXPECT_EQ(*chosen - *detected, 5ms);
   EXPECT_EQ(answers_in(robot), std::vector<std::string>{"map answered"})
-      << "it is no suspect, since it answered" << transcript(robot);
+      << "it is no suspect, since it answered";
   robot.run_for(5s);
-  EXPECT_TRUE(robot.works("nav")) << transcript(robot);
+  EXPECT_TRUE(robot.works("nav"));
 }
 
 TEST(Questions, AreAskedOnceOfWhatNeverAnswers) {
@@ -119,12 +114,10 @@ TEST(Questions, AreAskedOnceOfWhatNeverAnswers) {
   robot["map"].answers = false;
   robot.run_for(5s);
   for (int i = 0; i < 2; ++i) {
-    robot["nav"].fault = "redeploy";
-    robot.run_for(10s);
-    EXPECT_EQ(robot.count_asked("map: ask"), 1u) << transcript(robot);
-    EXPECT_EQ(robot.count_asked("nav: stop process"), static_cast<std::size_t>(i + 1))
-        << transcript(robot);
-    EXPECT_TRUE(robot.works("nav")) << transcript(robot);
+    robot.fail("nav", "redeploy", 10s);
+    EXPECT_EQ(robot.count_asked("map: ask"), 1u);
+    EXPECT_EQ(robot.count_asked("nav: stop process"), static_cast<std::size_t>(i + 1));
+    EXPECT_TRUE(robot.works("nav"));
   }
 }
 
@@ -133,9 +126,8 @@ TEST(Questions, AreNotAwaitedForWhatIsKnownToBeDead) {
   navigation.answers_at_first();
   navigation.hang();
   TestRobot& robot = navigation.robot;
-  robot.kill("nav");
-  robot.run_for(600ms);
-  EXPECT_TRUE(robot.was_asked("nav: start process")) << transcript(robot);
+  robot.kill("nav", 600ms);
+  EXPECT_TRUE(robot.was_asked("nav: start process"));
 }
 
 TEST(Questions, ALostAnswerIsNotAwaitedForLong) {
@@ -146,8 +138,8 @@ TEST(Questions, ALostAnswerIsNotAwaitedForLong) {
   robot["map"].answers = false;
   robot["map"].lateness = 1h;
   robot.run_for(1200ms);
-  EXPECT_EQ(robot.count_asked("map: ask"), 1u) << transcript(robot);
-  EXPECT_TRUE(robot.was_asked("nav: stop process")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("map: ask"), 1u);
+  EXPECT_TRUE(robot.was_asked("nav: stop process"));
 }
 
 // culprit could not receive an answer meanwhile.
@@ -158,13 +150,11 @@ TEST(Questions, ProveNothingWhileTheRobotCannotBeHeard) {
   robot["nav"].fault = "redeploy";
   robot["map"].answers = false;
   while (!robot.was_asked("map: ask")) robot.run_for(10ms);
-  robot.tell(HearingLost{"a test"});
-  robot.run_for(1s);
+  robot.tell(HearingLost{"a test"}, 1s);
   robot["map"].answers = true;
-  robot.tell(HearingRegained{});
-  robot.run_for(5s);
-  EXPECT_TRUE(robot.was_asked("nav: stop process")) << transcript(robot);
-  EXPECT_EQ(robot.count("which may be the cause"), 0u) << transcript(robot);
+  robot.tell(HearingRegained{}, 5s);
+  EXPECT_TRUE(robot.was_asked("nav: stop process"));
+  EXPECT_EQ(robot.count("which may be the cause"), 0u);
 }
 
 TEST(Questions, AreNotAskedByAPlannerThatDoesNotWeighCauses) {
@@ -173,8 +163,8 @@ TEST(Questions, AreNotAskedByAPlannerThatDoesNotWeighCauses) {
   navigation.hang();
   TestRobot& robot = navigation.robot;
   robot.run_for(3s);
-  EXPECT_FALSE(robot.was_asked("map: ask")) << transcript(robot);
-  EXPECT_TRUE(robot.was_asked("nav: stop process")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("map: ask"));
+  EXPECT_TRUE(robot.was_asked("nav: stop process"));
 }
 
 // Many that serve nothing but one: those are asked that are nearest, and no more at once.
@@ -198,14 +188,12 @@ TEST(Questions, AreBoundedInNumber) {
   }
   robot.add("nav", {needs.begin(), needs.begin() + 10}, "/cmd").has_lifecycle = false;
   robot.discover();
-  robot.tell(EndpointAppeared{"/nav", EndpointKind::kPublisher, "/cmd"});
-  robot.run_for(5s);
+  robot.tell(EndpointAppeared{"/nav", EndpointKind::kPublisher, "/cmd"}, 5s);
   robot["nav"].fault = "redeploy";
   for (const std::string& each : needs) robot[each].answers = false;
   robot.run_for(700ms);
-  EXPECT_EQ(robot.count_asked("ask whether"), 16u) << transcript(robot);
-  for (int i = 0; i < 16; ++i)
-    EXPECT_TRUE(robot.was_asked("map" + std::to_string(i) + ": ask")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("ask whether"), 16u);
+  for (int i = 0; i < 16; ++i) EXPECT_TRUE(robot.was_asked("map" + std::to_string(i) + ": ask"));
 }
 
 }  // namespace

@@ -36,10 +36,8 @@ std::string choice(bool has_namesake) {
   robot.add("lidar", {}, "/scan");
   robot.discover();
   robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/rgb"});
-  robot.tell(EndpointAppeared{"/lidar", EndpointKind::kPublisher, "/scan"});
-  robot.run_for(6s);
-  robot["camera"].fault = "restart";
-  robot.run_for(1s);
+  robot.tell(EndpointAppeared{"/lidar", EndpointKind::kPublisher, "/scan"}, 6s);
+  robot.fail("camera", "restart", 1s);
   if (has_namesake) robot.tell(NamesakesSeen{"/camera", 1});
   const BayesPlanner planner;
   const auto decisions =
@@ -59,11 +57,9 @@ TEST(RestrainedPlanner, AsksOfEachThatIsChosen) {
   TestRobot robot(kRules, std::make_unique<PassivePlanner>());
   robot.add("camera", {}, "/rgb");
   robot.add("lidar", {}, "/scan");
-  robot.discover();
-  robot.run_for(6s);
+  robot.discover(6s);
   robot["camera"].fault = "restart";
-  robot["lidar"].fault = "redeploy";
-  robot.run_for(1s);
+  robot.fail("lidar", "redeploy", 1s);
   robot.tell(NamesakesSeen{"/camera", 1});
   const BayesPlanner planner;
   const auto decisions =

@@ -21,8 +21,7 @@ TestRobot robot_without_program() {
   TestRobot robot(kBarredRules);
   robot.add("camera", {}, "/image");
   robot.add("fusion", {"camera"}, "/fused");
-  robot.discover();
-  robot.run_for(6s);
+  robot.discover(6s);
   robot["camera"].start_missing = "there is no program '/opt/robot/camera'";
   return robot;
 }
@@ -34,49 +33,43 @@ void bring_back(TestRobot& robot) {
 
 TEST(StartBarred, IsReportedOnceWithItsPath) {
   TestRobot robot = robot_without_program();
-  robot.kill("camera");
-  robot.run_for(3s);
+  robot.kill("camera", 3s);
   EXPECT_EQ(
       robot.count("camera cannot be started: there is no program '/opt/robot/camera'; culprit "
                   "starts it when that is there"),
-      1u)
-      << transcript(robot);
+      1u);
 }
 
 TEST(StartBarred, UsesUpNoAttemptHoweverLongItLasts) {
   TestRobot robot = robot_without_program();
-  robot.kill("camera");
-  robot.run_for(600s);
-  EXPECT_EQ(robot.count("exhausted"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+  robot.kill("camera", 600s);
+  EXPECT_EQ(robot.count("exhausted"), 0u);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u);
 }
 
 TEST(StartBarred, IsMadeAtOnceWhenItCanBe) {
   TestRobot robot = robot_without_program();
-  robot.kill("camera");
-  robot.run_for(8s);
+  robot.kill("camera", 8s);
   bring_back(robot);
   robot.run_for(2s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera"));
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u);
 }
 
 TEST(StartBarred, IsFollowedByAllAttemptsThatItsRuleHas) {
   TestRobot robot = robot_without_program();
   robot["camera"].dies_at_start = true;
-  robot.kill("camera");
-  robot.run_for(8s);
+  robot.kill("camera", 8s);
   bring_back(robot);
   robot.run_for(60s);
-  EXPECT_GE(robot.count_asked("camera: start process"), 3u) << transcript(robot);
+  EXPECT_GE(robot.count_asked("camera: start process"), 3u);
 }
 
 TEST(StartBarred, EndsNoHungProcessThatCouldNotBeStartedAgain) {
   TestRobot robot = robot_without_program();
   robot.tell(StartBarred{robot.id("camera"), robot["camera"].start_missing});
-  robot.stop("camera");
-  robot.run_for(10s);
-  EXPECT_FALSE(robot.was_asked("camera: stop process")) << transcript(robot);
+  robot.stop("camera", 10s);
+  EXPECT_FALSE(robot.was_asked("camera: stop process"));
 }
 
 }  // namespace

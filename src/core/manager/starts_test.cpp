@@ -22,8 +22,7 @@ class Starts : public testing::TestWithParam<PlannerFactory> {
                     GetParam()(), options);
     robot.add("device");
     robot.add("camera", {"device"}, "/rgb");
-    robot.discover();
-    robot.run_for(4s);
+    robot.discover(4s);
     return robot;
   }
 };
@@ -36,20 +35,19 @@ std::size_t starts_of(const TestRobot& robot) { return robot.count_asked("camera
 TEST_P(Starts, OfADeadProcessGoOnForEver) {
   TestRobot robot = driver();
   robot["camera"].dies_at_start = true;
-  robot.kill("camera");
-  robot.run_for(30min);
-  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << transcript(robot);
+  robot.kill("camera", 30min);
+  EXPECT_EQ(robot.count("Silent is exhausted"), 1u);
   const std::size_t before = starts_of(robot);
-  EXPECT_GE(before, 8u) << transcript(robot);
-  EXPECT_LE(before, 20u) << transcript(robot);
+  EXPECT_GE(before, 8u);
+  EXPECT_LE(before, 20u);
   robot.run_for(1h);
-  EXPECT_GE(starts_of(robot), before + 11) << transcript(robot);
-  EXPECT_LE(starts_of(robot), before + 13) << transcript(robot);
-  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << "told once" << transcript(robot);
+  EXPECT_GE(starts_of(robot), before + 11);
+  EXPECT_LE(starts_of(robot), before + 13);
+  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << "told once";
   robot["camera"].dies_at_start = false;
   robot.run_for(6min);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count("Silent resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera"));
+  EXPECT_EQ(robot.count("Silent resolved by redeploy"), 1u);
 }
 
 TEST_P(Starts, BeyondTheBoundOfRestartsAreOnlyDelayed) {
@@ -58,13 +56,12 @@ TEST_P(Starts, BeyondTheBoundOfRestartsAreOnlyDelayed) {
   options.governor.limits.restarts = {2, 100h};
   TestRobot robot = driver("", options);
   robot["camera"].dies_at_start = true;
-  robot.kill("camera");
-  robot.run_for(30min);
-  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << "a person is told" << transcript(robot);
-  EXPECT_GE(starts_of(robot), 6u) << transcript(robot);
+  robot.kill("camera", 30min);
+  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << "a person is told";
+  EXPECT_GE(starts_of(robot), 6u);
   robot["camera"].dies_at_start = false;
   robot.run_for(11min);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera"));
 }
 
 // It crashes a second after each start.
@@ -78,16 +75,15 @@ TEST_P(Starts, OfWhatCrashesAgainAndAgainGetFewer) {
     if (robot.works("camera")) robot.kill("camera");
     if (s == 600) after_ten = starts_of(robot);
   }
-  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << transcript(robot);
-  EXPECT_GE(starts_of(robot), after_ten + 8) << transcript(robot);
-  EXPECT_LE(starts_of(robot), after_ten + 12) << transcript(robot);
+  EXPECT_EQ(robot.count("Silent is exhausted"), 1u);
+  EXPECT_GE(starts_of(robot), after_ten + 8);
+  EXPECT_LE(starts_of(robot), after_ten + 12);
 }
 
 TEST_P(Starts, TeachNothingOnceTheRuleIsExhausted) {
   TestRobot robot = driver();
   robot["camera"].dies_at_start = true;
-  robot.kill("camera");
-  robot.run_for(20min);
+  robot.kill("camera", 20min);
   const Belief before = robot.manager().knowledge().beliefs[StrategyId(1)];
   robot.run_for(2h);
   EXPECT_EQ(robot.manager().knowledge().beliefs[StrategyId(1)], before);
@@ -96,51 +92,44 @@ TEST_P(Starts, TeachNothingOnceTheRuleIsExhausted) {
 // A process that runs and does not work is left to the person.
 TEST_P(Starts, OfARunningProcessEndWithItsAttempts) {
   TestRobot robot = driver();
-  robot["camera"].fault = "a person";
-  robot.run_for(60s);
-  ASSERT_EQ(robot.count("Silent is exhausted"), 1u) << transcript(robot);
+  robot.fail("camera", "a person", 60s);
+  ASSERT_EQ(robot.count("Silent is exhausted"), 1u);
   const std::size_t before = robot.asked.size();
   robot.run_for(1h);
-  EXPECT_EQ(robot.asked.size(), before) << transcript(robot);
+  EXPECT_EQ(robot.asked.size(), before);
   robot["camera"].fault.clear();
   robot["camera"].start_time = 1s;
-  robot.kill("camera");
-  robot.run_for(20s);
-  EXPECT_TRUE(robot.works("camera")) << "now it is down, and started" << transcript(robot);
+  robot.kill("camera", 20s);
+  EXPECT_TRUE(robot.works("camera")) << "now it is down, and started";
 }
 
 // A device that can be opened again only after 20 s.
 TEST_P(Starts, WithinReadyAreTriesOfOneAttempt) {
   TestRobot robot = driver(" READY 30s");
   robot["camera"].dies_at_start = true;
-  robot.kill("camera");
-  robot.run_for(20s);
+  robot.kill("camera", 20s);
   robot["camera"].dies_at_start = false;
   robot.run_for(16s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("(redeploy, "), 1u) << "one attempt" << transcript(robot);
-  EXPECT_EQ(starts_of(robot), 6u) << "after 1, 2, 4, 8 and 16 s" << transcript(robot);
+  EXPECT_TRUE(robot.works("camera"));
+  EXPECT_EQ(robot.count("did not resolve"), 0u);
+  EXPECT_EQ(robot.count("(redeploy, "), 1u) << "one attempt";
+  EXPECT_EQ(starts_of(robot), 6u) << "after 1, 2, 4, 8 and 16 s";
 }
 
 TEST_P(Starts, WithoutReadyAreAttempts) {
   TestRobot robot = driver();
   robot["camera"].dies_at_start = true;
-  robot.kill("camera");
-  robot.run_for(3s);
-  EXPECT_GE(robot.count("redeploy did not resolve Silent: camera: it exited at once"), 1u)
-      << transcript(robot);
+  robot.kill("camera", 3s);
+  EXPECT_GE(robot.count("redeploy did not resolve Silent: camera: it exited at once"), 1u);
 }
 
 TEST_P(Starts, FailWhenReadyIsOver) {
   TestRobot robot = driver(" READY 10s");
   robot["camera"].dies_at_start = true;
-  robot.kill("camera");
-  robot.run_for(9s);
-  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
+  robot.kill("camera", 9s);
+  EXPECT_EQ(robot.count("did not resolve"), 0u);
   robot.run_for(3s);
-  EXPECT_EQ(robot.count("redeploy did not resolve Silent: camera: it exited at once"), 1u)
-      << transcript(robot);
+  EXPECT_EQ(robot.count("redeploy did not resolve Silent: camera: it exited at once"), 1u);
 }
 
 // Its node is there for a moment before the device refuses it.
@@ -152,12 +141,12 @@ TEST_P(Starts, ThatEndWhenTheNodeWasThereAreTriesToo) {
     robot.run_for(100ms);
     if (robot["camera"].is_in_graph && i % 7 == 6) robot.kill("camera");
   }
-  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
-  EXPECT_GE(starts_of(robot), 3u) << transcript(robot);
+  EXPECT_EQ(robot.count("did not resolve"), 0u);
+  EXPECT_GE(starts_of(robot), 3u);
   robot["device"].fault.clear();
   robot.run_for(10s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-  EXPECT_EQ(robot.count("(redeploy, "), 1u) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera"));
+  EXPECT_EQ(robot.count("(redeploy, "), 1u);
 }
 
 }  // namespace

@@ -38,8 +38,7 @@ TestRobot arm_robot(const std::string& rules) {
   robot.add("planner");
   robot.add("driver", {}, "/joints");
   robot.add("light");
-  robot.discover();
-  robot.run_for(7s);
+  robot.discover(7s);
   return robot;
 }
 
@@ -60,26 +59,22 @@ TEST(Steps, EachBeginsWhenTheOneBeforeIsProven) {
     if (!is_up && robot.was_asked("planner: activate")) was_there_first = false;
   };
   robot.run_for(20s);
-  EXPECT_TRUE(was_there_first) << transcript(robot);
-  EXPECT_LT(place_of(robot, "planner: deactivate"), place_of(robot, "driver: stop"))
-      << transcript(robot);
-  EXPECT_LT(place_of(robot, "driver: start"), place_of(robot, "planner: activate"))
-      << transcript(robot);
-  EXPECT_TRUE(robot.works("planner")) << transcript(robot);
-  EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("deactivate planner, then redeploy driver, then activate planner"), 1u)
-      << transcript(robot);
+  EXPECT_TRUE(was_there_first);
+  EXPECT_LT(place_of(robot, "planner: deactivate"), place_of(robot, "driver: stop"));
+  EXPECT_LT(place_of(robot, "driver: start"), place_of(robot, "planner: activate"));
+  EXPECT_TRUE(robot.works("planner"));
+  EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u);
+  EXPECT_EQ(robot.count("deactivate planner, then redeploy driver, then activate planner"), 1u);
 }
 
 TEST(Steps, NothingIsActivatedThatWasNotActive) {
   TestRobot robot = arm_robot(arm_with(kAround));
   robot["planner"].state = Lifecycle::kInactive;
   robot.tell(LifecycleRead{robot.id("planner"), Lifecycle::kInactive});
-  robot["driver"].fault = "redeploy";
-  robot.run_for(20s);
-  EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
-  EXPECT_EQ(robot["planner"].state, Lifecycle::kInactive) << transcript(robot);
+  robot.fail("driver", "redeploy", 20s);
+  EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u);
+  EXPECT_FALSE(robot.was_asked("planner: activate"));
+  EXPECT_EQ(robot["planner"].state, Lifecycle::kInactive);
 }
 
 // culprit was killed when the driver was back: the next one gives back what that one had taken.
@@ -98,18 +93,17 @@ TEST(Steps, AreFinishedByTheNextCulprit) {
   next->resume({StrategyId(0), 2, false, {{taken, Outcome::kDone}}});
   robot.replace_manager(std::move(next));
   robot.run_for(20s);
-  EXPECT_TRUE(robot.was_asked("planner: activate")) << transcript(robot);
-  EXPECT_EQ(robot["planner"].state, Lifecycle::kActive) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("planner: activate"));
+  EXPECT_EQ(robot["planner"].state, Lifecycle::kActive);
 }
 
 // culprit was killed between two tries: the next one knows from the journal what the first try owes.
 TEST(Steps, WhatATryOwesIsGivenBackByTheNextCulprit) {
   TestRobot robot = arm_robot(arm_with(kAround, "ATTEMPTS 50"));
   robot["driver"].dies_at_start = true;
-  robot.kill("driver");
-  robot.run_for(10s);
-  ASSERT_EQ(robot["planner"].state, Lifecycle::kInactive) << transcript(robot);
-  ASSERT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  robot.kill("driver", 10s);
+  ASSERT_EQ(robot["planner"].state, Lifecycle::kInactive);
+  ASSERT_FALSE(robot.was_asked("planner: activate"));
   robot["driver"].dies_at_start = false;
   robot["driver"].fault = "nothing helps";
   robot.start_by_hand("driver");
@@ -120,19 +114,17 @@ TEST(Steps, WhatATryOwesIsGivenBackByTheNextCulprit) {
   next->remember(robot.manager().knowledge().known_robot());
   robot.replace_manager(std::move(next));
   robot.run_for(120s);
-  EXPECT_TRUE(robot.was_asked("planner: activate")) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("planner: activate"));
 }
 
 // A process that is dead is deactivated enough.
 TEST(Steps, TheDriverIsReplacedBehindADeadPlanner) {
   TestRobot robot = arm_robot(arm_with(kAround));
-  robot.kill("planner");
-  robot.run_for(5s);
-  robot["driver"].fault = "redeploy";
-  robot.run_for(20s);
-  EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("planner: deactivate")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  robot.kill("planner", 5s);
+  robot.fail("driver", "redeploy", 20s);
+  EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u);
+  EXPECT_FALSE(robot.was_asked("planner: deactivate"));
+  EXPECT_FALSE(robot.was_asked("planner: activate"));
 }
 
 TEST(Steps, UndoingLeavesWhatAPersonHasChangedSince) {
@@ -143,28 +135,25 @@ TEST(Steps, UndoingLeavesWhatAPersonHasChangedSince) {
   robot["driver"].parameters = {{"gain", Value(1.0)}};
   robot["driver"].fault = "nothing helps";
   for (int i = 0; i < 100 && robot["light"].state == Lifecycle::kActive; ++i) robot.run_for(100ms);
-  ASSERT_EQ(robot["light"].state, Lifecycle::kInactive) << transcript(robot);
+  ASSERT_EQ(robot["light"].state, Lifecycle::kInactive);
   for (const Lifecycle wish : {Lifecycle::kActive, Lifecycle::kInactive}) {
     robot.run_for(500ms);
     robot["light"].state = wish;
     robot.tell(LifecycleRead{robot.id("light"), wish});
   }
   robot.run_for(20s);
-  EXPECT_EQ(robot["light"].state, Lifecycle::kInactive) << transcript(robot);
-  EXPECT_EQ(robot.count("light: active: something else has changed it since"), 1u)
-      << transcript(robot);
+  EXPECT_EQ(robot["light"].state, Lifecycle::kInactive);
+  EXPECT_EQ(robot.count("light: active: something else has changed it since"), 1u);
 }
 
 TEST(Steps, UndoingDoesNotActivateWhatCommandsADeadDriver) {
   TestRobot robot = arm_robot(arm_with(kAround, "ATTEMPTS 1"));
   robot["driver"].dies_at_start = true;
-  robot.kill("driver");
-  robot.run_for(40s);
-  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
-  EXPECT_EQ(robot["planner"].state, Lifecycle::kInactive) << transcript(robot);
-  EXPECT_GE(robot.count("cannot be undone: planner: active: it may depend on driver"), 1u)
-      << transcript(robot);
-  EXPECT_GE(robot.count("Silent is exhausted"), 1u) << transcript(robot);
+  robot.kill("driver", 40s);
+  EXPECT_FALSE(robot.was_asked("planner: activate"));
+  EXPECT_EQ(robot["planner"].state, Lifecycle::kInactive);
+  EXPECT_GE(robot.count("cannot be undone: planner: active: it may depend on driver"), 1u);
+  EXPECT_GE(robot.count("Silent is exhausted"), 1u);
 }
 
 // Two lines without THEN say as much: the driver is redeployed behind a planner that is inactive.
@@ -174,9 +163,8 @@ TEST(Steps, NorDoesUndoingAStrategyWithoutSteps) {
                          "      ADAPTATION driver redeploy 10\n",
                          "ATTEMPTS 1"));
   robot["driver"].dies_at_start = true;
-  robot.kill("driver");
-  robot.run_for(40s);
-  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  robot.kill("driver", 40s);
+  EXPECT_FALSE(robot.was_asked("planner: activate"));
 }
 
 TEST(Steps, UndoingGoesBackwardsWhereAllIsUp) {
@@ -187,10 +175,9 @@ TEST(Steps, UndoingGoesBackwardsWhereAllIsUp) {
                          "      THEN ADAPTATION planner activate 2\n",
                          "ATTEMPTS 1"));
   robot["light"].refuses = true;
-  robot["driver"].fault = "nothing helps";
-  robot.run_for(40s);
-  EXPECT_EQ(robot["planner"].state, Lifecycle::kActive) << transcript(robot);
-  EXPECT_EQ(robot.count("planner: active again"), 1u) << transcript(robot);
+  robot.fail("driver", "nothing helps", 40s);
+  EXPECT_EQ(robot["planner"].state, Lifecycle::kActive);
+  EXPECT_EQ(robot.count("planner: active again"), 1u);
 }
 
 TEST(Steps, WhatIsStoppedForARepairIsStartedAgainInUndoing) {
@@ -200,19 +187,17 @@ TEST(Steps, WhatIsStoppedForARepairIsStartedAgainInUndoing) {
                          "      THEN ADAPTATION planner start 10\n",
                          "ATTEMPTS 1"));
   robot["light"].refuses = true;
-  robot["driver"].fault = "nothing helps";
-  robot.run_for(40s);
-  EXPECT_TRUE(robot.works("planner")) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
+  robot.fail("driver", "nothing helps", 40s);
+  EXPECT_TRUE(robot.works("planner"));
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u);
 }
 
 TEST(Steps, WhatIsStoppedStaysStoppedWhileTheDriverIsDown) {
   TestRobot robot = arm_robot(arm_with(kStopped, "ATTEMPTS 1"));
   robot["driver"].dies_at_start = true;
-  robot.kill("driver");
-  robot.run_for(40s);
-  EXPECT_FALSE(robot.was_asked("planner: start")) << transcript(robot);
-  EXPECT_EQ(robot["planner"].process, ProcessState::kGone) << transcript(robot);
+  robot.kill("driver", 40s);
+  EXPECT_FALSE(robot.was_asked("planner: start"));
+  EXPECT_EQ(robot["planner"].process, ProcessState::kGone);
 }
 
 // The first try has left the planner inactive, or stopped: that step is done already.
@@ -220,13 +205,12 @@ TEST(Steps, TheNextTryGoesOnFromWhatTheFirstOneLeft) {
   for (const char* steps : {kAround, kStopped}) {
     TestRobot robot = arm_robot(arm_with(steps));
     robot["driver"].dies_at_start = true;
-    robot.kill("driver");
-    robot.run_for(10s);
-    ASSERT_FALSE(robot.works("driver")) << transcript(robot);
+    robot.kill("driver", 10s);
+    ASSERT_FALSE(robot.works("driver"));
     robot["driver"].dies_at_start = false;
     robot.run_for(120s);
-    EXPECT_TRUE(robot.works("driver")) << transcript(robot);
-    EXPECT_TRUE(robot.works("planner")) << transcript(robot);
+    EXPECT_TRUE(robot.works("driver"));
+    EXPECT_TRUE(robot.works("planner"));
   }
 }
 

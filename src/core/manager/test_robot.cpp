@@ -1,6 +1,7 @@
 #include "manager/test_robot.h"
 
 #include <algorithm>
+#include <iostream>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -17,6 +18,10 @@ TestRobot::TestRobot(const std::string& text, std::unique_ptr<const Planner> pla
   rules_ = std::make_unique<RuleSet>(checked.rules.value_or(RuleSet{}));
   options.start = now;
   manager_ = std::make_unique<Manager>(*rules_, std::move(planner), options);
+}
+
+TestRobot::~TestRobot() {
+  if (testing::Test::HasFailure()) std::cout << transcript(*this) << std::endl;
 }
 
 void TestRobot::replace_manager(std::unique_ptr<Manager> manager) {
@@ -38,10 +43,10 @@ TestRobot::Component& TestRobot::add(const std::string& name, std::vector<std::s
   return components_[name] = component;
 }
 
-void TestRobot::discover() {
+void TestRobot::discover(Duration then) {
   for (const auto& [name, component] : components_) appear(component);
   show_ends();
-  step();
+  step(then);
 }
 
 void TestRobot::show_ends() {
@@ -90,44 +95,49 @@ bool TestRobot::works(const std::string& name) const {
   return true;
 }
 
-void TestRobot::signal(const std::string& name, Value value) {
+void TestRobot::signal(const std::string& name, Value value, Duration then) {
   for (std::size_t s = 0; s < rules_->signals.size(); ++s) {
     if (rules_->signals[s].name == name) observe(SignalRead{SignalId(s), value});
   }
-  step();
+  step(then);
 }
 
-void TestRobot::kill(const std::string& name) {
+void TestRobot::fail(const std::string& name, const std::string& fault, Duration then) {
+  components_.at(name).fault = fault;
+  run_for(then);
+}
+
+void TestRobot::kill(const std::string& name, Duration then) {
   Component& component = components_.at(name);
   component.process = ProcessState::kGone;
   observe(ProcessSeen{id(name), ProcessState::kGone, component.pid, "killed by signal 9",
                       Cause::kFault});
-  step();
+  step(then);
 }
 
-void TestRobot::stop(const std::string& name) {
+void TestRobot::stop(const std::string& name, Duration then) {
   Component& component = components_.at(name);
   component.process = ProcessState::kStopped;
   observe(ProcessSeen{id(name), ProcessState::kStopped, component.pid, "", Cause::kFault});
-  step();
+  step(then);
 }
 
-void TestRobot::leave(const std::string& name) {
+void TestRobot::leave(const std::string& name, Duration then) {
   Component& component = components_.at(name);
   component.end();
   observe(NodeVanished{"/" + name});
   observe(ProcessSeen{id(name), ProcessState::kGone, component.pid, "exit code 0", Cause::kWish});
-  step();
+  step(then);
 }
 
-void TestRobot::start_by_hand(const std::string& name) {
+void TestRobot::start_by_hand(const std::string& name, Duration then) {
   Component& component = components_.at(name);
   component.start(++last_pid_);
   come_up(component);
-  step();
+  step(then);
 }
 
-void TestRobot::cut(const std::string& host) {
+void TestRobot::cut(const std::string& host, Duration then) {
   constexpr Duration kUntilSilent = 4s;
   constexpr Duration kLease = 20s;
   cut_.insert(host);
@@ -147,9 +157,10 @@ void TestRobot::cut(const std::string& host) {
             observe(NodeVanished{"/" + name});
           }
         }));
+  if (then > Duration::zero()) run_for(then);
 }
 
-void TestRobot::mend(const std::string& host) {
+void TestRobot::mend(const std::string& host, Duration then) {
   constexpr Duration kAnnounced = 1s;
   cut_.erase(host);
   later(kAnnounced, [this, host] {
@@ -162,6 +173,7 @@ void TestRobot::mend(const std::string& host) {
     }
     show_ends();
   });
+  if (then > Duration::zero()) run_for(then);
 }
 
 void TestRobot::later(Duration delay, std::function<void()> action) {
@@ -206,7 +218,7 @@ void TestRobot::freeze(Duration time) {
   agenda_ = std::move(agenda);
 }
 
-void TestRobot::step() {
+void TestRobot::step(Duration then) {
   const std::vector<Command> commands = manager_->step(now, inbox_);
   for (const Event& event : manager_->events()) {
     events.push_back(event);
@@ -216,11 +228,13 @@ void TestRobot::step() {
   if (after_step) after_step();
   const bool lives = !before_commands || before_commands(inbox_, commands);
   inbox_.clear();
-  if (!lives) return;
-  for (const Command& command : commands) {
-    asked.push_back(rules_->components[command.component.index].name + ": " + to_string(command));
-    later(5ms, [this, command] { serve(command); });
+  if (lives) {
+    for (const Command& command : commands) {
+      asked.push_back(rules_->components[command.component.index].name + ": " + to_string(command));
+      later(5ms, [this, command] { serve(command); });
+    }
   }
+  if (then > Duration::zero()) run_for(then);
 }
 
 void TestRobot::reply(const Command& command, Outcome outcome, decltype(Reply::value) value,
@@ -338,6 +352,34 @@ std::size_t TestRobot::count_asked(const std::string& part) const {
   return static_cast<std::size_t>(
       std::count_if(asked.begin(), asked.end(),
                     [&](const std::string& line) { return line.find(part) != std::string::npos; }));
+}
+
+std::string rules_of_camera_and_lamp(const std::string& head, const std::string& camera) {
+  return head + "COMPONENT camera NODE /camera LAUNCH \"camera\" " + camera + R"(
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+COMPONENT lamp   NODE /lamp
+RULE CameraSilent
+  POLICIES ERROR ATTEMPTS 2
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY redeploy_camera 90 10
+      ADAPTATION camera redeploy 20
+RULE FusionSilent
+  POLICIES WARNING
+  TRIGGER age(/fused) > 300ms
+    STRATEGY restart_fusion 90 10
+      ADAPTATION fusion restart 10
+RULE Dark
+  POLICIES NON_CRITICAL
+  TRIGGER brightness < 0.5
+    STRATEGY light 90 10
+      ADAPTATION lamp set_parameter on 1 2
+)";
+}
+
+void add_camera_and_lamp(TestRobot& robot) {
+  robot.add("camera", {}, "/rgb");
+  robot.add("fusion", {"camera"}, "/fused");
+  robot.add("lamp").parameters["on"] = Value(std::int64_t{0});
 }
 
 std::string transcript(const TestRobot& robot) {

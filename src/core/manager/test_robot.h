@@ -32,6 +32,9 @@ class TestRobot {
   // `options.start` is when the robot's time begins.
   TestRobot(const std::string& rules, std::unique_ptr<const Planner> planner,
             Manager::Options options);
+  // Prints all that was said and asked for if a check of the test failed.
+  ~TestRobot();
+  TestRobot(TestRobot&&) = default;
 
   struct Component : simulation::Body {
     std::string name;
@@ -61,29 +64,31 @@ class TestRobot {
   Component& add(const std::string& name, std::vector<std::string> needs = {},
                  const std::string& topic = "", Duration period = 100ms);
 
-  void signal(const std::string& name, Value value);
-  void kill(
-      const std::string& name);  // -9: its process is gone, its node lingers until its lease ends
-  void stop(const std::string& name);           // -STOP
-  void leave(const std::string& name);          // it says good-bye and ends, as after Ctrl-C
-  void start_by_hand(const std::string& name);  // a person does
   void run_for(Duration time);
+  // After each of these, the robot runs for `then`.
+  void fail(const std::string& name, const std::string& fault, Duration then);
+  void signal(const std::string& name, Value value, Duration then = {});
+  // -9: its process is gone, its node lingers until its lease ends
+  void kill(const std::string& name, Duration then = {});
+  void stop(const std::string& name, Duration then = {});           // -STOP
+  void leave(const std::string& name, Duration then = {});          // good-bye, as after Ctrl-C
+  void start_by_hand(const std::string& name, Duration then = {});  // a person does
   // Cuts that computer off, and reports it as the link does: that it is silent after some seconds,
   // and that its nodes left the graph when their leases expired.
-  void cut(const std::string& host);
-  void mend(const std::string& host);
+  void cut(const std::string& host, Duration then = {});
+  void mend(const std::string& host, Duration then = {});
   // All stands still, the manager too.
   void freeze(Duration time);
-  void order(Order order) { tell(std::move(order)); }
+  void order(Order order, Duration then = {}) { tell(std::move(order), then); }
   // An observation that comes now.
   template <class What>
-  void tell(What what) {
+  void tell(What what, Duration then = {}) {
     observe(std::move(what));
-    step();
+    step(then);
   }
 
   // Says each node, topic and state to the manager, as discovery does. Call once, after add().
-  void discover();
+  void discover(Duration then = {});
 
   bool works(const std::string& name) const;
   ComponentId id(const std::string& name) const;
@@ -127,7 +132,7 @@ class TestRobot {
   void observe(What what) {
     inbox_.push_back({now, std::move(what)});
   }
-  void step();
+  void step(Duration then = {});
   void serve(const Command& command);
   void reply(const Command& command, Outcome outcome, decltype(Reply::value) value = {},
              std::string text = "");
@@ -151,6 +156,11 @@ class TestRobot {
   std::vector<Observation> inbox_;
   int last_pid_ = 100;
 };
+
+// A camera, what needs it, and a lamp that has nothing to do with either, each with a rule. `head`: lines before them;
+// `camera`: clauses of the camera.
+std::string rules_of_camera_and_lamp(const std::string& head = "", const std::string& camera = "");
+void add_camera_and_lamp(TestRobot& robot);
 
 // All that was said and asked for, a line each.
 std::string transcript(const TestRobot& robot);

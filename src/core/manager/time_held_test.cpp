@@ -47,7 +47,7 @@ struct HalfSimulated {
           std::pair("/driver", "/odometry")})
       robot.tell(EndpointAppeared{node, EndpointKind::kPublisher, topic});
     robot.run_for(8s);
-    EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+    EXPECT_EQ(robot.count("detected"), 0u);
     robot.said.clear();
   }
   // Stops the camera's clock, or lets it go on.
@@ -68,9 +68,9 @@ TEST(TimeHeld, NothingIsJudgedAboutItsNodesAndThoseThatReadFromThem) {
     simulated.hold(false);
     robot.run_for(20s);
   }
-  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("blind"), 0u) << transcript(robot);
-  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("detected"), 0u);
+  EXPECT_EQ(robot.count("blind"), 0u);
+  EXPECT_TRUE(robot.asked.empty());
 }
 
 TEST(TimeHeld, NodesOfRealTimeAreRepairedMeanwhile) {
@@ -78,13 +78,11 @@ TEST(TimeHeld, NodesOfRealTimeAreRepairedMeanwhile) {
   TestRobot& robot = simulated.robot;
   simulated.hold(true);
   robot.run_for(5s);
-  robot["driver"].fault = "redeploy";
-  robot.run_for(10s);
-  EXPECT_TRUE(robot.works("driver")) << transcript(robot);
-  robot.kill("detector");
-  robot.run_for(10s);
-  EXPECT_TRUE(robot.was_asked("detector: start process")) << transcript(robot);
-  EXPECT_FALSE(robot.was_asked("camera:")) << transcript(robot);
+  robot.fail("driver", "redeploy", 10s);
+  EXPECT_TRUE(robot.works("driver"));
+  robot.kill("detector", 10s);
+  EXPECT_TRUE(robot.was_asked("detector: start process"));
+  EXPECT_FALSE(robot.was_asked("camera:"));
 }
 
 TEST(TimeHeld, AGoalDoesNotAgeMeanwhile) {
@@ -93,17 +91,13 @@ TEST(TimeHeld, AGoalDoesNotAgeMeanwhile) {
       "RULE Slow\n  POLICIES WARNING REPORT\n  TRIGGER goal_age(/go) > 10s\n");
   robot.add("driver", {}, "/go/_action/status");
   robot.discover();
-  robot.tell(EndpointAppeared{"/driver", EndpointKind::kPublisher, "/go/_action/status"});
-  robot.run_for(8s);
-  robot.tell(GoalsSeen{TopicId(0), {{1, GoalStatus::kExecuting}}});
-  robot.run_for(6s);
-  robot.tell(TimeHeld{robot.id("driver"), true});
-  robot.run_for(60s);
-  robot.tell(TimeHeld{robot.id("driver"), false});
-  robot.run_for(3s);
-  EXPECT_EQ(robot.count("Slow detected"), 0u) << transcript(robot);
+  robot.tell(EndpointAppeared{"/driver", EndpointKind::kPublisher, "/go/_action/status"}, 8s);
+  robot.tell(GoalsSeen{TopicId(0), {{1, GoalStatus::kExecuting}}}, 6s);
+  robot.tell(TimeHeld{robot.id("driver"), true}, 60s);
+  robot.tell(TimeHeld{robot.id("driver"), false}, 3s);
+  EXPECT_EQ(robot.count("Slow detected"), 0u);
   robot.run_for(2s);
-  EXPECT_EQ(robot.count("Slow detected"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("Slow detected"), 1u);
 }
 
 // A failure that follows a step of the system clock names it.
@@ -123,11 +117,10 @@ TEST(ClockStep, IsNamedInTheFailureThatFollows) {
     HalfSimulated robots;
     TestRobot& robot = robots.robot;
     robot.tell(ClockStepped{-1h});
-    EXPECT_EQ(robot.count(kSet), 1u) << transcript(robot);
+    EXPECT_EQ(robot.count(kSet), 1u);
     robot.run_for(before);
-    robot["camera"].fault = "redeploy";
-    robot.run_for(10s);
-    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+    robot.fail("camera", "redeploy", 10s);
+    EXPECT_TRUE(robot.works("camera"));
     const bool is_named = evidence_of(robot).find(kSet) != std::string::npos;
     EXPECT_EQ(is_named, before < 1h) << evidence_of(robot);
   }
@@ -139,12 +132,11 @@ TEST(TimeHeld, AKilledNodeIsStartedAgain) {
   TestRobot& robot = simulated.robot;
   simulated.hold(true);
   robot.run_for(5s);
-  robot.kill("camera");
-  robot.run_for(60s);
+  robot.kill("camera", 60s);
   simulated.hold(false);
   robot.run_for(20s);
-  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u);
+  EXPECT_TRUE(robot.works("camera"));
 }
 
 TEST(TimeHeld, NodesThatStaySilentAfterwardsAreJudged) {
@@ -153,9 +145,8 @@ TEST(TimeHeld, NodesThatStaySilentAfterwardsAreJudged) {
   simulated.hold(true);
   robot.run_for(20s);
   robot["camera"].fault = "redeploy";
-  robot.tell(TimeHeld{robot.id("camera"), false});
-  robot.run_for(10s);
-  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  robot.tell(TimeHeld{robot.id("camera"), false}, 10s);
+  EXPECT_TRUE(robot.works("camera"));
 }
 
 }  // namespace

@@ -24,33 +24,30 @@ TestRobot blurred_camera() {
   TestRobot robot(kFocus);
   robot.add("camera").parameters["focus"] = Value(std::int64_t{0});
   robot.discover();
-  robot.signal("blur", Value(1.0));
-  robot.run_for(700ms);
+  robot.signal("blur", Value(1.0), 700ms);
   return robot;
 }
 
 TEST(Verdicts, WaitForAFreshReadingOfASignalThatWasReadOnlyOnce) {
   TestRobot robot = blurred_camera();
-  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
-  robot.signal("blur", Value(0.0));
-  robot.run_for(1s);
-  EXPECT_EQ(robot.count("Blurred resolved by focus"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("did not resolve"), 0u);
+  robot.signal("blur", Value(0.0), 1s);
+  EXPECT_EQ(robot.count("Blurred resolved by focus"), 1u);
 }
 
 TEST(Verdicts, ComeInTheRhythmOfASignalOnceThatIsKnown) {
   TestRobot robot = blurred_camera();
+  robot.signal("blur", Value(1.0), 700ms);
   robot.signal("blur", Value(1.0));
-  robot.run_for(700ms);
-  robot.signal("blur", Value(1.0));
-  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("did not resolve"), 0u);
   robot.run_for(200ms);
-  EXPECT_EQ(robot.count("focus did not resolve Blurred"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("focus did not resolve Blurred"), 1u);
 }
 
 TEST(Verdicts, DoNotWaitForEverForASignalThatFellSilent) {
   TestRobot robot = blurred_camera();
   robot.run_for(5s);
-  EXPECT_EQ(robot.count("focus did not resolve Blurred"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("focus did not resolve Blurred"), 1u);
 }
 
 // Whether it helped is unknown for half a minute, and then it did not. Such a failure is looked at in each cycle from
@@ -75,7 +72,7 @@ RULE Blurred
     if (attempt) deadline = attempt->deadline;
     robot.run_for(1ms);
   }
-  EXPECT_EQ(robot.now, deadline + DueVerdicts::kLostAfter) << transcript(robot);
+  EXPECT_EQ(robot.now, deadline + DueVerdicts::kLostAfter);
 }
 
 // ---- what was started has to find what it reads
@@ -106,8 +103,7 @@ TestRobot two_in_a_row(const std::string& broken) {
   TestRobot robot(kTwoInARow, std::make_unique<BayesPlanner>(), finding_within(3500ms));
   robot.add("camera", {}, "/image");
   robot.add("detector", {}, "/objects").hears = {"camera"};
-  robot.discover();
-  robot.run_for(3s);
+  robot.discover(3s);
   robot[broken].fault = "nobody knows what";
   return robot;
 }
@@ -125,40 +121,39 @@ Duration verdict_of(const TestRobot& robot) {
 TEST(Verdicts, OnWhatWasStartedWaitUntilItCanHaveHeardWhatItReads) {
   TestRobot robot = two_in_a_row("detector");
   robot.run_for(8s);
-  EXPECT_GE(verdict_of(robot), 3400ms) << transcript(robot);
-  EXPECT_LE(verdict_of(robot), 4s) << transcript(robot);
+  EXPECT_GE(verdict_of(robot), 3400ms);
+  EXPECT_LE(verdict_of(robot), 4s);
 }
 
 TEST(Verdicts, OnWhatWasStartedAndReadsNothingDoNot) {
   TestRobot robot = two_in_a_row("camera");
   robot.run_for(8s);
-  EXPECT_GE(verdict_of(robot), 1s) << transcript(robot);
-  EXPECT_LE(verdict_of(robot), 1500ms) << transcript(robot);
+  EXPECT_GE(verdict_of(robot), 1s);
+  EXPECT_LE(verdict_of(robot), 1500ms);
 }
 
 // As long as Fast DDS may take to match it.
 TEST(Verdicts, DoNotCountAWellNodeAsFailedThatFindsWhatItReadsLate) {
   TestRobot robot = two_in_a_row("detector");
   robot.run_for(1s);
-  ASSERT_EQ(robot.count("redeploy detector: done"), 1u) << transcript(robot);
+  ASSERT_EQ(robot.count("redeploy detector: done"), 1u);
   robot.run_for(2500ms);
   robot["detector"].fault.clear();
   robot.run_for(1s);
-  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("DetectorSilent resolved by detector_again"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count_asked("detector: start process"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("did not resolve"), 0u);
+  EXPECT_EQ(robot.count("DetectorSilent resolved by detector_again"), 1u);
+  EXPECT_EQ(robot.count_asked("detector: start process"), 1u);
 }
 
 TEST(Verdicts, DoNotWaitForEverForWhatIsNotThere) {
   TestRobot robot = two_in_a_row("detector");
   robot["camera"].dies_at_start = true;
   robot.run_for(1s);
-  ASSERT_EQ(robot.count("redeploy detector: done"), 1u) << transcript(robot);
-  robot.kill("camera");
-  robot.run_for(12s);
-  EXPECT_EQ(robot.count("detector_again did not resolve"), 0u) << transcript(robot);
+  ASSERT_EQ(robot.count("redeploy detector: done"), 1u);
+  robot.kill("camera", 12s);
+  EXPECT_EQ(robot.count("detector_again did not resolve"), 0u);
   robot.run_for(3s);
-  EXPECT_EQ(robot.count("detector_again did not resolve"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("detector_again did not resolve"), 1u);
 }
 
 }  // namespace

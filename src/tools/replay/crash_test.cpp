@@ -58,8 +58,7 @@ bool live_die_and_go_on(const Story& story, int steps, bool sends, Life::Journal
   TestRobot robot(story.rules);
   robot.add("camera", {}, "/rgb").parameters["gain"] = 1.0;
   Life first(folder / "first.journal", robot, story.rules);
-  robot.discover();
-  robot.run_for(6s);
+  robot.discover(6s);
   first.wait_until_known();
   robot["camera"].fault = story.fault;
   first.die_after(steps, sends, journal);
@@ -142,12 +141,11 @@ journal::Recovery left_behind(Duration later, std::optional<journal::Ending> end
   robot.add("camera", {}, "/rgb");
   {
     Life first(folder / "first.journal", robot, kSlowCamera);
-    robot.discover();
-    robot.run_for(6s);
+    robot.discover(6s);
     robot["camera"].fault = "redeploy";
     robot["camera"].start_time = 10s;
     robot.run_for(2s);
-    EXPECT_TRUE(robot.was_asked("camera: start process")) << transcript(robot);
+    EXPECT_TRUE(robot.was_asked("camera: start process"));
     if (ending) first.end(*ending);
     robot.before_commands = nullptr;
   }
@@ -214,8 +212,7 @@ RULE Silent
   TestRobot robot(rules);
   robot.add("camera", {}, "/rgb");
   Life life(folder / "a.journal", robot, rules);
-  robot.discover();
-  robot.run_for(6s);
+  robot.discover(6s);
   robot["camera"].fault = "redeploy";
   while (!robot.was_asked("start process")) robot.run_for(10ms);
   life.die_after(0, true);
@@ -262,14 +259,14 @@ RULE Blurred
     measure(0, 6s);
     blur_once();
     first = learned();
-    EXPECT_EQ(first.count, 1) << transcript(robot);
+    EXPECT_EQ(first.count, 1);
   }
   {
     const Life life(folder / "a.journal", robot, rules);
     EXPECT_EQ(learned(), first);
     measure(0, 2min);
     blur_once();
-    EXPECT_EQ(learned().count, 2) << transcript(robot);
+    EXPECT_EQ(learned().count, 2);
   }
   const journal::Reader reader = value_of(journal::Reader::open(folder / "a.journal"));
   Recording recording = value_of(Recording::open(reader));
@@ -312,7 +309,7 @@ RULE Lost
   measure(1, 20s);
   measure(0, 5s);
   const Coupling known = learned();
-  EXPECT_GT(known.spared, 1) << transcript(robot);
+  EXPECT_GT(known.spared, 1);
   first.die_after(0, true);
   measure(1, 5s);
   ASSERT_TRUE(first.is_dead());
@@ -365,7 +362,7 @@ struct SharedPort : testing::Test {
       measure(1, 3s);
     }
     for (int i = 0; i < 1000 && times_together(journal) < 2; ++i) std::this_thread::sleep_for(10ms);
-    EXPECT_EQ(times_together(journal), 2) << transcript(robot);
+    EXPECT_EQ(times_together(journal), 2);
   }
   const Coincidences& known() { return robot.manager().knowledge().coincidences; }
   // All of it, by name.

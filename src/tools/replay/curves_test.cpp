@@ -37,12 +37,9 @@ void record_camera(const std::filesystem::path& path) {
   robot.add("camera", {}, "/rgb");
   Life life(path, robot, kCurveRules);
   robot.discover();
-  robot.signal("brightness", Value(50.0));
-  robot.run_for(150s);
-  robot.signal("brightness", Value(20.0));
-  robot.run_for(1s);
-  robot.signal("brightness", Value(50.0));
-  robot.run_for(149s);
+  robot.signal("brightness", Value(50.0), 150s);
+  robot.signal("brightness", Value(20.0), 1s);
+  robot.signal("brightness", Value(50.0), 149s);
   life.end(journal::Ending::kStopped);
 }
 

@@ -31,8 +31,7 @@ struct Memory : testing::Test {
   Memory() {
     robot.add("camera", {}, "/rgb");
     live();
-    robot.discover();
-    robot.run_for(5s);
+    robot.discover(5s);
   }
 
   // The process ends without a word, with all that it had written; another one takes over.
@@ -107,8 +106,7 @@ TEST_F(Memory, OfAFailureThatIsGoneIsNone) {
   robot["camera"].fault = "a person";
   run_until_said("Silent detected");
   crash();
-  robot["camera"].fault = "restart";
-  robot.run_for(20s);
+  robot.fail("camera", "restart", 20s);
   EXPECT_TRUE(robot.works("camera")) << transcript();
 }
 

@@ -3,7 +3,6 @@
 #include <fstream>
 #include <random>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/test_folder.h"
@@ -102,8 +101,7 @@ bool live_lose_power_and_begin_anew(int steps, unsigned seed) {
     test::copy_parts(path, first.remains(), {"-learned"});
     return lives;
   };
-  robot.discover();
-  robot.run_for(6s);
+  robot.discover(6s);
   robot["camera"].fault = "redeploy";
   robot["gimbal"].fault = "speed=1.5";
   first.die_after(steps, true);
@@ -118,17 +116,15 @@ bool live_lose_power_and_begin_anew(int steps, unsigned seed) {
   robot["camera"].end();
   robot["camera"].fault = "";
   robot.run_for(5s);
-  robot.start_by_hand("camera");
-  robot.run_for(5s);
+  robot.start_by_hand("camera", 5s);
   const std::size_t asked = robot.asked.size();
   Life second(first.remains(), robot, kTwoComputers);
   EXPECT_TRUE(second.recovery.was_other_boot) << what;
   // As after any such start the robot has its time to show itself.
   robot.run_for(1s);
   EXPECT_EQ(robot.asked.size(), asked) << what << ": nothing is gone on with";
-  robot["camera"].fault = "redeploy";
-  robot.run_for(90s);
-  EXPECT_TRUE(robot.works("camera")) << what << transcript(robot);
+  robot.fail("camera", "redeploy", 90s);
+  EXPECT_TRUE(robot.works("camera")) << what;
   EXPECT_LE(robot.count_asked("camera: start process"),
             robot.count_asked("camera: stop process") + 1)
       << what;

@@ -66,10 +66,8 @@ void record(const std::filesystem::path& path, const std::function<void(TestRobo
 
 void break_things(TestRobot& robot) {
   robot.run_for(7s);
-  robot["camera"].fault = "redeploy";
-  robot.run_for(20s);
-  robot.kill("fusion");
-  robot.run_for(20s);
+  robot.fail("camera", "redeploy", 20s);
+  robot.kill("fusion", 20s);
 }
 
 Repetition repeated(const std::filesystem::path& path) {
@@ -230,10 +228,8 @@ struct AnHour : testing::Test {
   AnHour() {
     record(folder / "a.journal", [](TestRobot& robot) {
       robot.run_for(7s - (robot.now - Time()));
-      robot["camera"].fault = "restart";
-      robot.run_for(23s);
-      robot.kill("fusion");
-      robot.run_for(10s);
+      robot.fail("camera", "restart", 23s);
+      robot.kill("fusion", 10s);
     });
   }
   const TestFolder folder;
