@@ -9,27 +9,6 @@
 namespace culprit::diagnose {
 namespace {
 
-// Does the strategy only deactivate the component, and activate it again later?
-bool only_pauses(const Strategy& strategy, ComponentId component) {
-  bool is_down = false;
-  for (const Adaptation& a : strategy.adaptations) {
-    if (a.component != component) continue;
-    if (a.type != (is_down ? AdaptationType::kActivate : AdaptationType::kDeactivate)) return false;
-    is_down = !is_down;
-  }
-  return !is_down;
-}
-
-// Adds what the strategy repairs. One that does nothing but pause repairs what it pauses.
-void add_repaired(const Strategy& strategy, std::vector<ComponentId>& to) {
-  const auto& all = strategy.components;
-  const std::size_t before = to.size();
-  std::ranges::copy_if(all, std::back_inserter(to), [&](ComponentId c) {
-    return !strategy.has_steps() || !only_pauses(strategy, c);
-  });
-  if (to.size() == before) to.insert(to.end(), all.begin(), all.end());
-}
-
 // Those that alone publish what the rule reads.
 std::vector<ComponentId> publishers_read(const Rule& rule, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
@@ -84,17 +63,11 @@ bool is_mended(RuleId rule, const RuleSet& rules) {
 
 std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
   const Rule& of = knowledge.rules[rule];
-  std::vector<ComponentId> touched;
-  for (const StrategyId id : of.strategies) {
-    const Strategy& strategy = knowledge.rules[id];
-    if (!strategy.is_last_resort) add_repaired(strategy, touched);
-  }
-  if (touched.empty() && of.components.empty()) return publishers_read(of, knowledge);
-  if (touched.empty()) return of.components;
-  sort_unique(touched);
-  if (touched.size() == 1) return touched;
-  std::vector<ComponentId> own = mended_publishers(of, touched, knowledge);
-  return own.empty() ? touched : own;
+  if (of.repaired.size() == 1) return of.repaired;
+  if (of.components.empty()) return publishers_read(of, knowledge);
+  if (of.repaired.empty()) return of.components;
+  std::vector<ComponentId> own = mended_publishers(of, of.repaired, knowledge);
+  return own.empty() ? of.repaired : own;
 }
 
 std::vector<ComponentId> watched_beside(RuleId rule, const Knowledge& knowledge) {

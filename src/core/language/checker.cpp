@@ -15,6 +15,7 @@
 #include "language/likely_slips.h"
 #include "language/parser.h"
 #include "language/place_index.h"
+#include "language/repaired.h"
 #include "language/rule_checks.h"
 #include "language/start_checks.h"
 #include "language/strategy_entries.h"
@@ -233,7 +234,11 @@ class Checker {
       const bool has_trigger = !conditions_.empty() && conditions_.back().rule == id;
       strategies_.add(strategy, id, has_trigger ? &conditions_.back() : nullptr);
     }
-    sort_unique(rules_.rules[id.index].components);
+    Rule& added = rules_.rules[id.index];
+    sort_unique(added.components);
+    for (const StrategyId strategy : added.strategies)
+      add_repaired(rules_[strategy], added.repaired);
+    sort_unique(added.repaired);
     // How a component of a broken line is started is not known.
     if (!written.has_broken_part && !has_broken_declaration_) {
       check_launches(written, symbols_, rules_, id, said, diagnostics_);

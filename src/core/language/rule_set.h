@@ -284,6 +284,9 @@ struct Rule {
   std::vector<StrategyId> strategies;   // in file order
   std::vector<ComponentId> components;  // that its strategies adapt, each once, ascending
   std::vector<InputId> inputs;          // that its trigger reads
+  // Of `components` those that it repairs: not what only a last resort adapts, or what a strategy only pauses
+  // for the sake of others (deactivated, and activated again later).
+  std::vector<ComponentId> repaired{};
   // Groups that it is about: its failure is resolved only while each of them is active.
   std::vector<GroupId> groups{};
   syntax::Name declaration;  // where it stands
