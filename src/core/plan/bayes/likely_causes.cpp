@@ -148,14 +148,13 @@ std::optional<ComponentId> LikelyCauses::missing_member(RuleId rule) const {
 }
 
 ComponentId LikelyCauses::likeliest_component(RuleId rule) const {
-  if (knowledge_.rules[rule].components.size() == 1) return knowledge_.rules[rule].components[0];
-  if (knowledge_.rules[rule].components.empty()) {  // it only reports
-    const std::vector<ComponentId> about = touched_by(rule, knowledge_);
-    return about.empty() ? ComponentId{} : about.front();
-  }
+  const std::vector<ComponentId> about = touched_by(rule, knowledge_);
+  if (about.empty()) return {};
+  const bool only_reports = knowledge_.rules[rule].components.empty();
+  if (about.size() == 1 || only_reports) return about.front();
   if (const auto missing = missing_member(rule)) return *missing;
   std::pair<std::int64_t, ComponentId> best{-1, {}};
-  for (const ComponentId c : knowledge_.rules[rule].components) {
+  for (const ComponentId c : about) {
     double chance = 0;
     for (const StrategyId s : knowledge_.rules[rule].strategies) {
       const auto& adapted = knowledge_.rules[s].components;
