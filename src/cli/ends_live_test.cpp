@@ -242,6 +242,36 @@ TEST_F(EndsHealed, ALauncherThatCrashesLeavesItsNodesAndTheStandInRunning) {
   for (const char* name : {"a", "b"}) kill(pid_in(all.culprit->output(), name), SIGKILL);
 }
 
+// A person ends the launch, and gives one node another name.
+TEST_F(EndsHealed, WhatIsRenamedInTheFileStaysDownNoMore) {
+  const std::string rules = rule("a", "alive(a) == false") + rule("b", "alive(b) == false");
+  std::string renamed = rules;
+  renamed.replace(renamed.find("NODE /a "), 8, "NODE /z ");
+  TestProgram launcher(
+      world, {"sh", "-c",
+              node("a") + " & all=$!; " + node("b") + " & all=\"$all $!\"; trap '" + kEndsAll +
+                  "' TERM; while :; do sleep 0.1; done"});
+  const auto culprit = start(rules);
+  for (const char* name : {"a", "b"})
+    ASSERT_TRUE(culprit->prints(std::string(name) + " is there (process ")) << culprit->output();
+  ASSERT_TRUE(culprit->prints("watching")) << culprit->output();
+  std::this_thread::sleep_for(1s);
+  launcher.signal(SIGTERM);
+  ASSERT_TRUE(culprit->prints("a and b stay down")) << culprit->output();
+  world.write("ends.rules", renamed);
+  culprit->signal(SIGHUP);
+  ASSERT_TRUE(culprit->prints("is reloaded")) << culprit->output();
+  ASSERT_TRUE(culprit->prints("a was never seen")) << culprit->output();
+  const std::string status = said_by({"status"});
+  EXPECT_THAT(status, Not(HasSubstr("Stays down: a")));
+  EXPECT_THAT(status, HasSubstr("Stays down: b: a person ended the launch of b"));
+  culprit->signal(SIGTERM);
+  culprit->wait();
+  const auto next = start(renamed);
+  ASSERT_TRUE(next->prints("a was never seen")) << next->output();
+  EXPECT_THAT(said_by({"status"}), Not(HasSubstr("Stays down: a")));
+}
+
 // One node of a launch that goes on is not the launch.
 TEST_F(EndsHealed, ANodeThatAPersonEndsAloneIsBroughtBackIntoItsLaunch) {
   for (const int signal : {SIGINT, SIGTERM}) {

@@ -327,6 +327,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   const bool has_rivals = frame_.lease && !frame_.lease->key.empty();
   known.is_whole = known.is_whole && !has_rivals && beginning.last_rules == source_.text();
   forget_other_processes(known, beginning.past, rules_);
+  forget_the_renamed(known, rules_, beginning.past);
   keep_down_what_ended_unseen(beginning);
   robot_->link().remember_publishers(known.publishers);
   if (known.is_whole)
@@ -460,6 +461,7 @@ void LiveSession::note_what_goes_on() {
 // distinguished from a crash.
 void LiveSession::keep_down_what_ended_unseen(RunBeginning& beginning) const {
   if (frame_.options.launches || frame_.options.governor.revives_in_doubt) return;
+  const std::set<ComponentId> stay_down = that_stay_down(beginning.past);
   std::map<int, std::set<ComponentId>> ended;  // by launcher
   std::set<int> run_on;
   for (const Event& event : beginning.past) {
@@ -476,12 +478,13 @@ void LiveSession::keep_down_what_ended_unseen(RunBeginning& beginning) const {
     if (is_there && !robot_->supervisor().has_started(found->component))
       run_on.insert(place.launcher);
   }
-  for (const auto& [launcher, components] : ended) {
+  for (auto& [launcher, components] : ended) {
     if (components.size() < 2 || run_on.contains(launcher)) continue;
-    const Event event{
-        robot_->now(),
-        StaysDown{{components.begin(), components.end()}, StaysDown::Why::kUnseen, launcher}};
-    beginning.past.push_back(event);
+    std::erase_if(components, [&](ComponentId each) { return stay_down.contains(each); });
+    if (components.empty()) continue;
+    beginning.past.push_back(
+        {robot_->now(),
+         StaysDown{{components.begin(), components.end()}, StaysDown::Why::kUnseen, launcher}});
   }
 }
 

@@ -12,6 +12,10 @@ namespace culprit::live {
 
 std::set<ComponentId> that_stay_down(const History& past);
 
+// The rules give a component another NODE than it had when it was seen. A person ended that one, and its process was of that
+// one: `past` says nothing of the component.
+void forget_the_renamed(const KnownRobot& known, const RuleSet& rules, History& past);
+
 // A person ended `launched` before, and launches them now.
 void forget_that_stay_down(const std::vector<KnownRobot::Part>& launched, const RuleSet& rules,
                            History& past);
