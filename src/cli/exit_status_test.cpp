@@ -85,6 +85,7 @@ TEST(ExitStatus, IsTwoWhereTheEnvironmentMakesNoSense) {
                                              {"init"},
                                              {"graph"},
                                              {"check", "--robot", "rules/sunset.rules"},
+                                             {"plan", "rules/sunset.rules"},
                                              {"plan", "--robot", "rules/sunset.rules"},
                                              {"run", "--no-journal", "rules/sunset.rules"}}) {
     const EndOfCommand end = end_of(words);

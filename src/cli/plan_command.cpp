@@ -25,8 +25,7 @@ namespace {
 
 struct PlanOptions {
   std::string rules;
-  std::string state;
-  bool robot = false;
+  std::string state;  // empty: the live robot's
   std::string format = "text";
   double settle_seconds = seconds(Manager::kDiscovery);
   std::vector<std::filesystem::path> message_path;
@@ -126,7 +125,8 @@ int plan_for_robot(const live::LoadedRules& loaded, const PlanOptions& options) 
   const auto seen = preflight.get();
   if (seen) fmt::print(stderr, "{}", seen->report);
   if (seen && !seen->has_robot) {
-    fmt::print(stderr, "culprit: nothing is planned\n");
+    fmt::print(stderr,
+               "culprit: nothing is planned; --state FILE takes the robot's state from a file\n");
     return kFailed;
   }
   rule_test::PlanReport report(*options.planner.planner(), manager.plannable(), manager.knowledge(),
@@ -141,7 +141,8 @@ int plan(const PlanOptions& options) {
       live::read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
   if (!loaded) return fail(loaded.error());
   fmt::print(stderr, "{}", loaded->remarks);
-  return options.robot ? plan_for_robot(*loaded, options) : plan_for_state(loaded->rules, options);
+  return options.state.empty() ? plan_for_robot(*loaded, options)
+                               : plan_for_state(loaded->rules, options);
 }
 
 }  // namespace
@@ -151,19 +152,21 @@ void add_plan(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "plan", "Show the decision that would be made now, its reasons, and what would change it");
   command->add_option("RULES", options->rules, "The rule file")->type_name("FILE")->required();
-  CLI::Option_group* what = command->add_option_group("State of the robot");
-  what->add_option("--state", options->state, "File with the robot's state (docs/plan.md)")
-      ->type_name("FILE");
-  what->add_flag("--robot", options->robot,
-                 "Watch the live robot for a moment, without changing it");
-  what->require_option(1);
+  auto* robot = command->add_flag_function(
+      "--robot", [](std::int64_t) {},
+      "Watch the live robot for a moment, without changing it (default)");
+  command
+      ->add_option("--state", options->state,
+                   "Take the robot's state from this file instead (docs/plan.md)")
+      ->type_name("FILE")
+      ->excludes(robot);
   command->add_option("--format", options->format, "text for people, json for programs")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   command->add_flag_function(
       "--json", [options](std::int64_t) { options->format = "json"; }, "The same as --format json");
   add_seconds(*command, "--settle", options->settle_seconds,
-              "With --robot: grace period for discovery", 0, 3600);
+              "Without --state: grace period for discovery", 0, 3600);
   command
       ->add_option("--message-path", options->message_path,
                    "Folders with .msg files: <folder>/<package>/msg/<Type>.msg")

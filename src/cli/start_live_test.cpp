@@ -89,9 +89,10 @@ TEST_F(Start, RunSaysThatNobodyIsThereAndWaits) {
   const std::string nobody = "no nodes were seen on domain " + std::to_string(domain());
   auto run = culprit({"run", rules, "--state-dir", state(), "--dry-run"});
   ASSERT_TRUE(run.prints(nobody)) << run.output();
-  auto plan = culprit({"plan", "--robot", rules, "--settle", "1"});
+  auto plan = culprit({"plan", rules, "--settle", "1"});
   EXPECT_EQ(plan.wait(), 1);
   EXPECT_THAT(plan.output(), HasSubstr(nobody));
+  EXPECT_THAT(plan.output(), HasSubstr("--state FILE"));
   EXPECT_THAT(plan.output(), Not(HasSubstr("camera_redeploy")));
   const TestProgram camera(world, {"sunset-node", "camera"});
   EXPECT_TRUE(run.prints("camera is /managed_subsystem/camera")) << run.output();

@@ -3,11 +3,7 @@
 namespace culprit {
 namespace {
 
-// Groups of options look like commands without a name.
-bool is_group_of_options(const CLI::App* command) { return command->get_name().empty(); }
-bool is_listed(const CLI::App* command) {
-  return !is_group_of_options(command) && !command->get_group().empty();
-}
+bool is_listed(const CLI::App* command) { return !command->get_group().empty(); }
 
 }  // namespace
 
@@ -22,14 +18,9 @@ const CLI::App* command_named(const CLI::App& app, const std::string& name) {
 }
 
 std::vector<const CLI::Option*> options_in(const CLI::App& command) {
-  auto options = command.get_options([&command](const CLI::Option* option) {
+  return command.get_options([&command](const CLI::Option* option) {
     return !option->get_group().empty() && option != command.get_help_ptr();
   });
-  for (const CLI::App* group : command.get_subcommands(is_group_of_options)) {
-    const auto more = options_in(*group);
-    options.insert(options.end(), more.begin(), more.end());
-  }
-  return options;
 }
 
 }  // namespace culprit

@@ -14,7 +14,7 @@ std::vector<const CLI::App*> commands_in(const CLI::App& app);
 // The command of this name, listed or not; null if there is none.
 const CLI::App* command_named(const CLI::App& app, const std::string& name);
 
-// The options and the positional arguments of `command` but --help, those of its groups last.
+// The options and the positional arguments of `command` but --help.
 std::vector<const CLI::Option*> options_in(const CLI::App& command);
 
 }  // namespace culprit

@@ -261,14 +261,6 @@ std::string missing(const CLI::RequiredError& error, const CLI::App& command) {
   constexpr std::string_view kRequired = " is required";
   if (text == "A subcommand is required")
     return command.get_name() + " needs a command: " + joined(names_of(commands_in(command)));
-  constexpr std::string_view kOneOf = "Exactly 1 option from [";
-  if (text.starts_with(kOneOf)) {
-    const bool is_none = !text.ends_with(" were given");
-    std::string options = text.substr(kOneOf.size(), text.find(']') - kOneOf.size());
-    for (auto at = options.find(','); at != std::string::npos; at = options.find(',', at + 4))
-      options.replace(at, 1, " or ");
-    return "give " + options + (is_none ? "" : ", and not both");
-  }
   constexpr std::string_view kRequires = " requires ";
   if (const auto at = text.find(kRequires); at != std::string::npos && !text.ends_with(kRequired))
     return text.substr(0, at) + " needs " + text.substr(at + kRequires.size()) + ", too";
