@@ -81,6 +81,7 @@ void add_mcp(CLI::App& app, const std::string& version, int& exit_code) {
       "read; "
       "propose, if allowed, puts a strategy before a person and never acts by itself");
   command->add_option("--rules", options->rules, "The rule file for the tool plan")
+      ->type_name("FILE")
       ->check(CLI::ExistingFile);
   command
       ->add_option("--allow", options->allowed,

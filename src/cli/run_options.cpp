@@ -110,7 +110,9 @@ void RunOptions::add_ways(CLI::App& command) {
 }
 
 void RunOptions::add_files(CLI::App& command) {
-  command.add_option("--state-dir", state_folder, "Folder for logs of started components")
+  command
+      .add_option("--state-dir", state_folder,
+                  "Folder for the journal and for logs of started components")
       ->type_name("FOLDER")
       ->check(trouble_of_folder)
       ->default_str("~/.local/state/culprit");
