@@ -30,7 +30,7 @@ bool is_missing(ComponentId id, const Knowledge& knowledge) {
 // Whether a strategy of the rule adapts the component and does not start it. One that a strategy starts may be in
 // reserve.
 bool needs(const Rule& rule, ComponentId id, const RuleSet& rules) {
-  if (!std::ranges::count(rule.components, id)) return false;
+  if (!std::ranges::count(rule.repaired, id)) return false;
   return std::ranges::none_of(rule.strategies, [&](StrategyId strategy) {
     return std::ranges::any_of(rules[strategy].adaptations, [&](const Adaptation& each) {
       return each.component == id && each.type == AdaptationType::kStart;

@@ -15,7 +15,7 @@ class RunningElsewhere {
   // `own_host`: the name of this computer. A node of it whose process is not known runs here.
   explicit RunningElsewhere(std::string own_host) : own_host_(std::move(own_host)) {}
 
-  // An earlier run saw it there last (KnownRobot). What this one saw counts more.
+  // An earlier run saw it there last (KnownRobot). This one's own sight counts more.
   void remember(ComponentId component, const std::string& host) {
     if (!host.empty() && host != own_host_ && !here_.contains(component))
       hosts_.try_emplace(component, host);

@@ -284,8 +284,8 @@ struct Rule {
   std::vector<StrategyId> strategies;   // in file order
   std::vector<ComponentId> components;  // that its strategies adapt, each once, ascending
   std::vector<InputId> inputs;          // that its trigger reads
-  // Of `components` those that it repairs: not what only a last resort adapts, or what a strategy only pauses
-  // for the sake of others (deactivated, and activated again later).
+  // Those of `components` that it repairs: without what only a last resort adapts, and what a strategy pauses
+  // for the sake of others (it deactivates that, and activates it again later).
   std::vector<ComponentId> repaired{};
   // Groups that it is about: its failure is resolved only while each of them is active.
   std::vector<GroupId> groups{};

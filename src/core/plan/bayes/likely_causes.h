@@ -40,7 +40,7 @@ class LikelyCauses {
   // component in trouble, or no node supplies an input.
   bool is_left_to_person(std::size_t node) const;
 
-  // Of the components that the rule is about (touched_by()), the one at which its strategies are most likely to help.
+  // The component of those that the rule is about (touched_by()) at which its strategies are most likely to help.
   ComponentId likeliest_component(RuleId rule) const;
   // The component that the effects of the node depend on.
   ComponentId component_of(std::size_t node) const;
