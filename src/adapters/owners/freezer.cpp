@@ -10,7 +10,7 @@
 namespace culprit::owners {
 namespace {
 
-constexpr std::string_view kFolder = "/sys/fs/cgroup";
+constexpr std::string_view kCgroups = "/sys/fs/cgroup";
 
 // The files that show it, as far as this machine has them. `group`: a line of cgroups(7), "0::/app.slice/lidar.service".
 std::vector<std::string> files_of(const std::string& group) {
@@ -19,7 +19,7 @@ std::vector<std::string> files_of(const std::string& group) {
   if (first == std::string::npos || second == std::string::npos) return {};
   const std::string controllers = group.substr(first + 1, second - first - 1);
   const std::string path = group.substr(second + 1);
-  const std::string folder(kFolder);
+  const std::string folder(kCgroups);
   if (controllers.empty())
     return {folder + path + "/cgroup.events", folder + "/unified" + path + "/cgroup.events"};
   if (controllers == "freezer") return {folder + "/freezer" + path + "/freezer.state"};
