@@ -14,9 +14,7 @@ using alerts::Alert;
 using test::TestRobot;
 using testing::HasSubstr;
 
-const std::string kAlertingRules =
-    test::rules_of_camera_and_lamp("ROBOT rover
-", "REQUIRED");
+const std::string kAlertingRules = test::rules_of_camera_and_lamp("ROBOT rover\n", "REQUIRED");
 
 struct Alerted {
   explicit Alerted(Approval approval = Approval::kNone, const std::string& rules = kAlertingRules) {

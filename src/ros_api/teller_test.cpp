@@ -17,8 +17,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-const std::string kToldRules = test::rules_of_camera_and_lamp("ROBOT rover
-");
+const std::string kToldRules = test::rules_of_camera_and_lamp("ROBOT rover\n");
 
 struct ToldRobot {
   explicit ToldRobot(Manager::Options options = {}) {
