@@ -87,7 +87,7 @@ void Departures::launcher_ended(const LauncherSeen& seen, Time at) {
   found->has_crashed = seen.has_crashed;
 }
 
-void Departures::left(ComponentId component, Time at) {
+void Departures::left(ComponentId component, Time at, Duration together) {
   Member& member = members_[component.index];
   Launch* launch = launch_of(component);
   const bool was_crash = member.has_left && member.has_crashed && launch != nullptr &&
@@ -102,7 +102,7 @@ void Departures::left(ComponentId component, Time at) {
   has_changed_ = true;
   if (member.has_owner) member.owner_is_asked_until = later(at, kAlone);
   if (launch == nullptr) return;
-  if (launch->left == 0 || later(launch->left_at, kTogether) < at) {
+  if (launch->left == 0 || later(launch->left_at, together) < at) {
     launch->left = 0;
     launch->left_first = at;
     launch->failed.reset();
@@ -112,7 +112,9 @@ void Departures::left(ComponentId component, Time at) {
 }
 
 void Departures::failed(ComponentId component, Time at) {
-  left(component, at);
+  const Launch* before = launch_of(component);
+  const bool another_failed = before != nullptr && before->left == 1 && before->failed;
+  left(component, at, another_failed ? kFailedAlone : kTogether);
   if (Launch* launch = launch_of(component)) launch->failed = component;
 }
 
@@ -363,9 +365,10 @@ std::optional<Departures::Departure> Departures::of(ComponentId component, Time 
   const Launch* launch = launch_of(component);
   if (launch == nullptr || launch->left == 0) return std::nullopt;
   const bool together = launch->left > 1 || (has_stand_in(*launch) && !is_original_left(*launch));
+  const Duration alone = launch->failed ? kFailedAlone : kAlone;
   const Time until = launch->ended != kNever
                          ? later(std::max(launch->left_at, launch->ended), kAlone)
-                         : later(launch->left_at, together ? kTogether : kAlone);
+                         : later(launch->left_at, together ? kTogether : alone);
   if (until <= now) return std::nullopt;
   return Departure{What::kIsEnding, launch->launcher, until};
 }

@@ -5,6 +5,7 @@
 // starts while its launcher runs stands in for the launch: it belongs to the launch, and ends with it.
 //
 //   one component exits cleanly        the others may be about to: it is held back for kAlone
+//   one fails, as also on Ctrl-C       likewise, for kFailedAlone
 //   several do                         they leave together, until none has for kTogether
 //   the launcher ends with them        the launch has ended. Its components stay down until a person
 //                                      starts one again, or orders so (Revive). One that runs on for
@@ -36,6 +37,8 @@ namespace culprit {
 class Departures {
  public:
   static constexpr Duration kAlone = std::chrono::seconds(2);
+  // Likewise of one that fails as it may on Ctrl-C, too: most often it threw an exception.
+  static constexpr Duration kFailedAlone = std::chrono::seconds(1);
   // ros2 launch asks a second time after 5 s, and kills after another 5 s.
   static constexpr Duration kTogether = std::chrono::seconds(11);
   static constexpr Duration kBack = std::chrono::seconds(10);
@@ -56,7 +59,7 @@ class Departures {
   void launched(ComponentId component, int launcher);
   void launcher_ended(const LauncherSeen& seen, Time at);
   // It left: of its own or of a person's will, as it seems. Again, for what left already: nothing.
-  void left(ComponentId component, Time at);
+  void left(ComponentId component, Time at) { left(component, at, kTogether); }
   // It left with an error, which its program also makes of a person's wish (Cause::kDoubt).
   void failed(ComponentId component, Time at);
   // It crashed.
@@ -128,6 +131,8 @@ class Departures {
   int to_end(ComponentId component) const;
 
  private:
+  // `together`: with those that left so long before.
+  void left(ComponentId component, Time at, Duration together);
   // On a launch whose launcher has ended.
   struct Verdict {
     enum class What : std::uint8_t {
@@ -143,7 +148,7 @@ class Departures {
   };
   struct Launch {
     int launcher = 0;
-    int left = 0;                         // how many, since none had left for kTogether
+    int left = 0;                         // how many, since none had left for long
     Time left_first = kNever;             // of them
     Time left_at = kLongAgo;              // the last one of them
     std::optional<ComponentId> failed{};  // one of them, with an error

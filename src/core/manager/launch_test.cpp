@@ -338,6 +338,16 @@ TEST(ALaunch, OfOneNodeInPythonThatFailsStaysDownInDoubtUnlessRevived) {
   }
 }
 
+// Its launch goes on, so each of them was an exception.
+TEST(ALaunch, OfWhichANodeInPythonFailsAgainAndAgainIsCompletedSoonEachTime) {
+  TestRobot robot = launch_of_five();
+  for (const std::string name : {"b", "c", "d"}) {
+    fail_as_python(robot, name, true);
+    robot.run_for(2500ms);
+    EXPECT_TRUE(robot.works(name)) << name;
+  }
+}
+
 // Its launch goes on: it was an exception, or a person ended it alone.
 TEST(ALaunch, OfWhichANodeInPythonFailsIsCompletedAgain) {
   for (const bool says_good_bye : {true, false}) {
