@@ -35,6 +35,10 @@ void search(std::size_t root, const BitRows& rows, std::span<Word> open,
   }
 }
 
+bool contains(std::span<const ComponentId> all, ComponentId component) {
+  return std::ranges::find(all, component) != all.end();
+}
+
 std::size_t level_of(const Rule& rule) {
   return static_cast<std::size_t>(rule.policies.criticality);
 }
@@ -100,15 +104,33 @@ bool watches_the_same(RuleId rule, RuleId other, const RuleSet& rules) {
   });
 }
 
+bool is_left_to_person(RuleId rule, const Knowledge& knowledge) {
+  return knowledge.rules[rule].strategies.empty() || knowledge.states.awaits_person(rule);
+}
+
+// Is rule j left to a person, though another one mends all that it is about (`mended`)?
+bool is_left_to(RuleId j, std::span<const ComponentId> mended, const Knowledge& knowledge) {
+  const std::vector<ComponentId> about = touched_by(j, knowledge);
+  return !about.empty() && is_left_to_person(j, knowledge) &&
+         std::ranges::all_of(about, [&](ComponentId c) { return contains(mended, c); });
+}
+
+// May a rule other than `i` yet mend what is wrong with the component?
+bool is_mended_by_another(ComponentId component, RuleId i, const Knowledge& knowledge) {
+  return std::ranges::any_of(knowledge.states.touching(component), [&](RuleId rule) {
+    return rule != i && knowledge.states[rule].detection.trigger.known &&
+           !knowledge.states.awaits_person(rule) &&
+           contains(mended_by(rule, knowledge.rules), component);
+  });
+}
+
 // Does rule j, which is left to a person, show what is wrong with components that i adapts, too (`touched`)?
 // It is the failure i, seen at another threshold, and no cause of it.
 bool is_seen_twice(RuleId j, RuleId i, std::span<const ComponentId> touched,
                    const Knowledge& knowledge) {
-  const bool is_left = knowledge.rules[j].strategies.empty() || knowledge.states.awaits_person(j);
-  return is_left && watches_the_same(j, i, knowledge.rules) &&
-         std::ranges::all_of(touched_by(j, knowledge), [&](ComponentId c) {
-           return std::ranges::find(touched, c) != touched.end();
-         });
+  return is_left_to_person(j, knowledge) && watches_the_same(j, i, knowledge.rules) &&
+         std::ranges::all_of(touched_by(j, knowledge),
+                             [&](ComponentId c) { return contains(touched, c); });
 }
 
 // Stands for the trouble of its components, too: its rule may have fired long after the process was down, as while
@@ -240,6 +262,7 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
     if (!nodes_[i].is_rule()) continue;
     const auto row = causes_[i];
     const std::vector<ComponentId> touched = touched_by(nodes_[i].rule, knowledge);
+    const std::vector<ComponentId> mended = mended_by(nodes_[i].rule, knowledge.rules);
     const BitRows& from = nodes_[i].is_outage ? touching : spreading;
     for (const ComponentId c : downstream_of_causes(nodes_[i].rule, knowledge)) {
       for_each(paths.upstream(reach.place_of(c), nodes_[i].rule),
@@ -250,11 +273,14 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
     for_each(row, [&](std::size_t j) {
       const bool is_trouble = nodes_[j].kind == CauseNode::Kind::kTrouble;
       const bool is_own =
-          is_trouble && std::ranges::find(touched, nodes_[j].component) != touched.end();
+          is_trouble ? contains(touched, nodes_[j].component) ||
+                           (contains(mended, nodes_[j].component) &&
+                            !is_mended_by_another(nodes_[j].component, nodes_[i].rule, knowledge))
+                     : is_left_to(nodes_[j].rule, mended, knowledge);
       const bool is_possible =
           is_trouble
               ? !is_own && can_explain(j, i, knowledge) && !may_be_effect(j, i, reach, knowledge)
-              : can_precede(j, i) &&
+              : !is_own && can_precede(j, i) &&
                     !is_seen_twice(nodes_[j].rule, nodes_[i].rule, touched, knowledge);
       if (!is_possible) clear(row, j);
     });

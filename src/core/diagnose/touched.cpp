@@ -9,6 +9,10 @@
 namespace culprit::diagnose {
 namespace {
 
+bool mends(const Adaptation& a) {
+  return a.type == AdaptationType::kRestart || a.type == AdaptationType::kCall || launches(a);
+}
+
 // Those that alone publish what the rule reads.
 std::vector<ComponentId> publishers_read(const Rule& rule, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
@@ -50,9 +54,19 @@ std::vector<ComponentId> mended_publishers(const Rule& rule,
 }  // namespace
 
 bool mends(const Strategy& strategy) {
-  return std::ranges::any_of(strategy.adaptations, [](const Adaptation& a) {
-    return a.type == AdaptationType::kRestart || a.type == AdaptationType::kCall || launches(a);
-  });
+  return std::ranges::any_of(strategy.adaptations, [](const Adaptation& a) { return mends(a); });
+}
+
+std::vector<ComponentId> mended_by(RuleId rule, const RuleSet& rules) {
+  std::vector<ComponentId> all;
+  for (const StrategyId id : rules[rule].strategies) {
+    if (rules[id].is_last_resort) continue;
+    for (const Adaptation& a : rules[id].adaptations) {
+      if (mends(a)) all.push_back(a.component);
+    }
+  }
+  sort_unique(all);
+  return all;
 }
 
 bool is_mended(RuleId rule, const RuleSet& rules) {

@@ -18,6 +18,8 @@ std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge);
 bool mends(const Strategy& strategy);
 // Does one of the rule's strategies, but for last resorts?
 bool is_mended(RuleId rule, const RuleSet& rules);
+// The components that these strategies mend, ascending.
+std::vector<ComponentId> mended_by(RuleId rule, const RuleSet& rules);
 // The publishers of what the rule reads, if it mends only others (a container, a hub): it shows the effects of what is upstream
 // of these, too. A rule that only reconfigures another component is about that one: the robot drives more slowly.
 std::vector<ComponentId> watched_beside(RuleId rule, const Knowledge& knowledge);
