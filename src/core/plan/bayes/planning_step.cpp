@@ -87,12 +87,20 @@ std::vector<Decision> PlanningStep::run() {
   return decisions();
 }
 
-// The failures for which a strategy may begin without a person, now or later. No failure need make
-// way for the others.
+// The failures for which a strategy may begin without a person, now or once what is under way is over. No failure need
+// make way for the others: what another one does may be what makes a strategy possible.
 std::vector<RuleId> PlanningStep::worked_on() const {
+  const auto may_begin = [&](const StrategyChance& each) {
+    const bool is_under_way =
+        each.invalid && knowledge_.states.reservation(each.invalid->component) != nullptr;
+    return !each.is_out() || is_under_way;
+  };
   std::vector<RuleId> rules;
-  std::copy_if(planned_.begin(), planned_.end(), std::back_inserter(rules),
-               [&](RuleId rule) { return !likely_.waits_for_person(causes_.index_of(rule)); });
+  std::copy_if(planned_.begin(), planned_.end(), std::back_inserter(rules), [&](RuleId rule) {
+    const std::size_t failure = causes_.index_of(rule);
+    return std::ranges::any_of(likely_.chances(failure), may_begin) &&
+           !likely_.waits_for_person(failure);
+  });
   return rules;
 }
 
