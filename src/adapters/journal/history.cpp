@@ -31,24 +31,29 @@ bool replaces_older(const Event& event, History& kept) {
   return true;
 }
 
-// A component that stays down does so until it is discovered again, or a person orders otherwise.
-// True if the event is about that alone.
+// A component that stays down does so until it is discovered again, or a person orders otherwise. A node that was shut down
+// may be discovered as it is: until it is in another state. True if the event is about that alone.
 bool ends_stay(const Event& event, const RuleSet& rules, History& kept) {
   if (std::holds_alternative<StaysDown>(event.what)) {
     kept.push_back(event);
     return true;
   }
   const auto* found = std::get_if<ComponentFound>(&event.what);
+  const auto* state = std::get_if<LifecycleIntended>(&event.what);
   const auto* run = order_of<RunStrategy>(event);
   const bool is_revival = order_of<Revive>(event) != nullptr;
-  if (found == nullptr && run == nullptr && !is_revival) return false;
+  if (found == nullptr && state == nullptr && run == nullptr && !is_revival) return false;
   for (Event& old : kept) {
     auto* down = std::get_if<StaysDown>(&old.what);
     if (down == nullptr) continue;
     std::erase_if(down->components, [&](ComponentId component) {
       const bool is_run =
           run != nullptr && std::ranges::count(rules[run->strategy].components, component) > 0;
-      return is_revival || is_run || (found != nullptr && found->component == component);
+      const bool is_back = down->why == StaysDown::Why::kShutDown
+                               ? state != nullptr && state->component == component &&
+                                     state->state != Lifecycle::kFinalized
+                               : found != nullptr && found->component == component;
+      return is_revival || is_run || is_back;
     });
   }
   std::erase_if(kept, [](const Event& old) {

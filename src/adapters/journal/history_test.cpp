@@ -66,6 +66,13 @@ TEST(History, WhatAPersonEndedStaysDownUntilItIsBackOrAPersonOrdersSo) {
   EXPECT_EQ(down(still_counting(past, late, r)), 0u);
   past.push_back(at(5s, StaysDown{{b}, StaysDown::Why::kOrder}));
   EXPECT_EQ(down(still_counting(past, late, r)), 1u);
+  // Each culprit discovers a node that was shut down, as it is.
+  History shut = {at(1s, StaysDown{{a}, StaysDown::Why::kShutDown}), at(2s, ComponentFound{a, 7})};
+  EXPECT_EQ(down(still_counting(shut, late, r)), 1u);
+  shut.push_back(at(3s, LifecycleIntended{a, Lifecycle::kFinalized}));
+  EXPECT_EQ(down(still_counting(shut, late, r)), 1u);
+  shut.push_back(at(4s, LifecycleIntended{a, Lifecycle::kActive}));
+  EXPECT_EQ(down(still_counting(shut, late, r)), 0u);
 }
 
 TEST(History, OutcomesAreReadBackAsTheyWereWritten) {

@@ -41,7 +41,12 @@ void Departures::arrived(ComponentId component, int pid, Time at, By by) {
   // A launch whose end was not seen may have a successor that has run for long.
   const bool is_back = member.down && member.down != StaysDown::Why::kUnseen;
   const bool is_returned = member.has_left && by == By::kOther;
-  member = {.is_there = true, .has_owner = member.has_owner};
+  const Member before = std::exchange(member, {.is_there = true, .has_owner = member.has_owner});
+  // It may be the same process, found by a new culprit, or once its computer is in reach again. Its state tells (is_up()).
+  if (before.down == StaysDown::Why::kShutDown) {
+    member.down = before.down;
+    member.is_told = before.is_told;
+  }
   if (is_back) member.back = at;
   if (is_returned) member.returned = at;
   forget_unused_launches();

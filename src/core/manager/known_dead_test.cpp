@@ -417,6 +417,27 @@ RULE CameraInactive
   }
 }
 
+// It runs on another computer, which was out of reach for a moment; or a new culprit finds it.
+TEST(AShutdown, StandsUntilTheNodeIsInAnotherState) {
+  TestRobot robot = robot_with(std::string(kPatientRules) + R"(
+RULE CameraInactive
+  POLICIES ERROR
+  TRIGGER lifecycle(camera) != "active"
+    STRATEGY renew 90 10
+      ADAPTATION camera redeploy 10
+)");
+  const ComponentId camera = robot.id("camera");
+  robot["camera"].state = Lifecycle::kFinalized;
+  robot.tell(LifecycleRead{camera, Lifecycle::kFinalized, true}, 10s);
+  robot.tell(NodeVanished{"/camera"}, 1s);
+  robot.tell(NodeAppeared{"/camera", 0});
+  robot.tell(LifecycleRead{camera, Lifecycle::kFinalized}, 1min);
+  EXPECT_FALSE(robot.was_asked(" process")) << transcript(robot);
+  EXPECT_TRUE(robot.manager().knowledge().departures.stays_down(camera));
+  robot.tell(LifecycleRead{camera, Lifecycle::kInactive});
+  EXPECT_FALSE(robot.manager().knowledge().departures.stays_down(camera));
+}
+
 // Ctrl-Z in its terminal, and later fg.
 TEST(AStop, ByAPersonIsNotUndone) {
   for (const Cause cause : {Cause::kWish, Cause::kFault}) {
