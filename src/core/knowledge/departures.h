@@ -37,7 +37,7 @@ namespace culprit {
 class Departures {
  public:
   static constexpr Duration kAlone = std::chrono::seconds(2);
-  // Likewise of one that fails as it may on Ctrl-C, too: most often it threw an exception.
+  // One that fails as it may on Ctrl-C, too, is held back for less: most often it threw an exception.
   static constexpr Duration kFailedAlone = std::chrono::seconds(1);
   // ros2 launch asks a second time after 5 s, and kills after another 5 s.
   static constexpr Duration kTogether = std::chrono::seconds(11);
