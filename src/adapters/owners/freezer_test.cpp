@@ -1,5 +1,6 @@
 #include "owners/freezer.h"
 
+#include <chrono>
 #include <csignal>
 #include <sys/wait.h>
 #include <thread>

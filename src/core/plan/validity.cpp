@@ -310,16 +310,16 @@ std::optional<Invalid> stays_deactivated(const Strategy& strategy, const Knowled
 // Does the rule act, or will it soon? One that has not begun for so long is held back: by a person, by the governor, or because
 // it waits itself for the failure that asks.
 bool acts_soon(RuleId rule, const Knowledge& knowledge) {
-  constexpr Duration kSoon = diagnose::kLongestEvidence;
+  const Duration soon = diagnose::kLongestEvidence;
   const RuleState& state = knowledge.states[rule];
   const Detection& seen = state.detection;
   switch (state.phase) {
     case RulePhase::kQuiet:
       return seen.trigger.known && seen.trigger.b && diagnose::may_fire(rule, knowledge) &&
              later(seen.trigger_since, knowledge.rules[rule].policies.hold_for) <=
-                 later(knowledge.now, kSoon);
+                 later(knowledge.now, soon);
     case RulePhase::kFailing:
-      return knowledge.now < later(state.failing_since, kSoon);
+      return knowledge.now < later(state.failing_since, soon);
     case RulePhase::kAttempting:
       return true;
     case RulePhase::kExhausted:
