@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "base/sort_unique.h"
+#include "diagnose/blameless.h"
 #include "diagnose/timing.h"
 
 namespace culprit::diagnose {
@@ -80,8 +81,11 @@ std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
   if (of.repaired.size() == 1) return of.repaired;
   if (of.components.empty()) return publishers_read(of, knowledge);
   if (of.repaired.empty()) return of.components;
-  std::vector<ComponentId> own = mended_publishers(of, of.repaired, knowledge);
-  return own.empty() ? of.repaired : own;
+  std::vector<ComponentId> all = mended_publishers(of, of.repaired, knowledge);
+  if (all.empty()) all = of.repaired;
+  std::vector<ComponentId> to_blame = all;
+  std::erase_if(to_blame, [&](ComponentId c) { return is_blameless(c, rule, knowledge); });
+  return to_blame.empty() ? all : to_blame;
 }
 
 std::vector<ComponentId> watched_beside(RuleId rule, const Knowledge& knowledge) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "execute/blameless.h"
+#include "diagnose/blameless.h"
 #include "execute/goal.h"
 #include "execute/limits.h"
 
@@ -64,7 +64,8 @@ std::optional<ComponentId> blameless_component(const Strategy& strategy,
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (adaptation.type != AdaptationType::kRestart && adaptation.type != AdaptationType::kRedeploy)
       continue;
-    if (!is_blameless(adaptation.component, strategy.rule, knowledge)) return std::nullopt;
+    if (!diagnose::is_blameless(adaptation.component, strategy.rule, knowledge))
+      return std::nullopt;
     if (!first) first = adaptation.component;
   }
   return first;

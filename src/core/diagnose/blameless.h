@@ -11,8 +11,8 @@
 
 #include "knowledge/knowledge.h"
 
-namespace culprit::execute {
+namespace culprit::diagnose {
 
 bool is_blameless(ComponentId component, RuleId rule, const Knowledge& knowledge);
 
-}  // namespace culprit::execute
+}  // namespace culprit::diagnose
