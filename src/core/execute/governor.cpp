@@ -297,8 +297,9 @@ void Governor::begin_planning() {
 bool Governor::withholds(StrategyId strategy, Time now) {
   const auto held = restraint_on(strategy, now);
   if (!held) return false;
-  write_.withheld[strategy.index] = {held->reason, held->until,
-                                     held->restraint == Restraint::kRestarts};
+  write_.withheld[strategy.index] = {
+      held->reason, held->until, held->restraint == Restraint::kRestarts,
+      held->restraint == Restraint::kEvidence && held->until == kNever};
   withheld_.push_back(strategy);
   tell({strategy}, *longer(held, restraint_on_all(now)), now);
   return true;

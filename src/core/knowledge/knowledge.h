@@ -50,9 +50,10 @@ struct Knowledge {
   Transients transients;
   // The governor's reason against an action now.
   struct Withheld {
-    std::string reason;        // empty: it is allowed
-    Time until = kNever;       // kNever: until somebody does something, or more is known
-    bool is_given_up = false;  // was done too often: a person must look
+    std::string reason;            // empty: it is allowed
+    Time until = kNever;           // kNever: until somebody does something, or more is known
+    bool is_given_up = false;      // was done too often: a person must look
+    bool is_contradicted = false;  // what is measured shows that its component works
   };
   using WithheldList = std::vector<Withheld>;  // by strategy
   WithheldList withheld;

@@ -1,6 +1,7 @@
 #include "manager/restrained_planner.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "execute/evidence.h"
 #include "plan/allowed.h"
@@ -8,11 +9,15 @@
 namespace culprit {
 namespace {
 
-std::optional<std::string> objection(StrategyId id, const Knowledge& knowledge) {
+std::optional<Knowledge::Withheld> objection(StrategyId id, const Knowledge& knowledge) {
   const Strategy& strategy = knowledge.rules[id];
-  if (auto doubt = execute::doubt_of_identity(strategy, knowledge)) return doubt;
-  if (auto reason = execute::launch_of_the_unseen(strategy, knowledge)) return reason;
-  return execute::contradiction(strategy, knowledge, knowledge.now);
+  if (auto doubt = execute::doubt_of_identity(strategy, knowledge))
+    return Knowledge::Withheld{.reason = std::move(*doubt)};
+  if (auto reason = execute::launch_of_the_unseen(strategy, knowledge))
+    return Knowledge::Withheld{.reason = std::move(*reason)};
+  if (auto reason = execute::contradiction(strategy, knowledge, knowledge.now))
+    return Knowledge::Withheld{.reason = std::move(*reason), .is_contradicted = true};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -28,9 +33,10 @@ std::vector<Decision> RestrainedPlanner::plan(std::span<const RuleId> failures,
   if (!is_any_withheld) return decisions;
   Knowledge marked(knowledge.rules, knowledge);
   return plan::allowed(planner_, failures, marked, [&](StrategyId chosen) {
-    auto reason = objection(chosen, marked);
-    if (reason) marked.withheld[chosen.index] = {std::move(*reason), kNever};
-    return reason.has_value();
+    auto withheld = objection(chosen, marked);
+    const bool is_withheld = withheld.has_value();
+    if (is_withheld) marked.withheld[chosen.index] = std::move(*withheld);
+    return is_withheld;
   });
 }
 

@@ -117,7 +117,8 @@ std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
   std::int64_t most = 0;
   std::size_t cause = failure;
   diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
-    if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), j);
+    if (parts(share) > most && !is_contradicted(j))
+      std::tie(most, cause) = std::pair(parts(share), j);
   });
   if (most == 0) return std::nullopt;
   // To wait for a person in vain is worse than a strategy in vain. Not where the process upstream is known to be gone.
@@ -125,6 +126,17 @@ std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
   const bool may_be_wrong = is_exhausted(cause) && !is_known_down(causes_[cause].rule, knowledge_);
   if (own >= kWorthATry && may_be_wrong) return diagnosis_.dead_in_loop(failure);
   return cause;
+}
+
+// Is all that is left to do about the failure held back, since the components evidently work? Then nobody waits for it.
+bool LikelyCauses::is_contradicted(std::size_t node) const {
+  const auto is_held = [&](const StrategyChance& each) {
+    return each.is_withheld && knowledge_.withheld[each.strategy.index].is_contradicted;
+  };
+  const std::vector<StrategyChance>& all = chances_[node];
+  return std::ranges::any_of(all, is_held) &&
+         std::ranges::all_of(
+             all, [&](const StrategyChance& each) { return each.is_out() || is_held(each); });
 }
 
 bool LikelyCauses::is_exhausted(std::size_t node) const {

@@ -47,6 +47,7 @@ class LikelyCauses {
 
  private:
   bool is_exhausted(std::size_t node) const;
+  bool is_contradicted(std::size_t node) const;
   std::vector<std::optional<ComponentId>> all_unheard() const;
   std::optional<ComponentId> unheard_behind(std::size_t failure) const;
   // The first member that is not up, of a group that a strategy of the rule brings up; its manager
