@@ -92,7 +92,7 @@ void Departures::launcher_ended(const LauncherSeen& seen, Time at) {
   found->has_crashed = seen.has_crashed;
 }
 
-void Departures::left(ComponentId component, Time at, Duration together) {
+void Departures::left(ComponentId component, Time at) {
   Member& member = members_[component.index];
   Launch* launch = launch_of(component);
   const bool was_crash = member.has_left && member.has_crashed && launch != nullptr &&
@@ -107,7 +107,7 @@ void Departures::left(ComponentId component, Time at, Duration together) {
   has_changed_ = true;
   if (member.has_owner) member.owner_is_asked_until = later(at, kAlone);
   if (launch == nullptr) return;
-  if (launch->left == 0 || later(launch->left_at, together) < at) {
+  if (launch->left == 0 || later(launch->left_at, kTogether) < at) {
     launch->left = 0;
     launch->left_first = at;
     launch->failed.reset();
@@ -116,11 +116,18 @@ void Departures::left(ComponentId component, Time at, Duration together) {
   launch->left_at = at;
 }
 
+// It may have left already: it said good-bye. Two that fail one after the other do not leave together.
 void Departures::failed(ComponentId component, Time at) {
-  const Launch* before = launch_of(component);
-  const bool another_failed = before != nullptr && before->left == 1 && before->failed;
-  left(component, at, another_failed ? kFailedAlone : kTogether);
-  if (Launch* launch = launch_of(component)) launch->failed = component;
+  left(component, at);
+  Launch* launch = launch_of(component);
+  if (launch == nullptr) return;
+  const bool is_second = launch->left == 2 && launch->failed;
+  if (is_second && later(launch->failed_at, kFailedAlone) < launch->left_at) {
+    launch->left = 1;
+    launch->left_first = launch->left_at;
+  }
+  launch->failed = component;
+  launch->failed_at = launch->left_at;
 }
 
 void Departures::fell(ComponentId component, Time at) {

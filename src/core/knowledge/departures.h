@@ -59,7 +59,7 @@ class Departures {
   void launched(ComponentId component, int launcher);
   void launcher_ended(const LauncherSeen& seen, Time at);
   // It left: of its own or of a person's will, as it seems. Again, for what left already: nothing.
-  void left(ComponentId component, Time at) { left(component, at, kTogether); }
+  void left(ComponentId component, Time at);
   // It left with an error, which its program also makes of a person's wish (Cause::kDoubt).
   void failed(ComponentId component, Time at);
   // It crashed.
@@ -131,8 +131,6 @@ class Departures {
   int to_end(ComponentId component) const;
 
  private:
-  // `together`: with those that left so long before.
-  void left(ComponentId component, Time at, Duration together);
   // On a launch whose launcher has ended.
   struct Verdict {
     enum class What : std::uint8_t {
@@ -148,10 +146,11 @@ class Departures {
   };
   struct Launch {
     int launcher = 0;
-    int left = 0;                         // how many, since none had left for long
+    int left = 0;                         // how many, since none had left for kTogether
     Time left_first = kNever;             // of them
     Time left_at = kLongAgo;              // the last one of them
-    std::optional<ComponentId> failed{};  // one of them, with an error
+    std::optional<ComponentId> failed{};  // one of them, with an error; the last such one
+    Time failed_at = kLongAgo;            // when it left
     Time fell_at = kLongAgo;              // the last crash before they began to leave
     std::optional<ComponentId> fell{};
     Time fell_before = kLongAgo;    // the crash before that one
