@@ -84,83 +84,82 @@ std::size_t open_questions(const Knowledge& knowledge) {
   return open;
 }
 
-// Asks the silent ones, as far as that is allowed now.
-void ask(std::span<const ComponentId> silent, const Knowledge& knowledge,
-         bool (*is_allowed)(const Questioned&, Time now), Questions& questions) {
-  std::size_t open = open_questions(knowledge);
+}  // namespace
+
+Questioner::Questioner(const Knowledge& knowledge,
+                       std::span<const std::optional<TroubleSeen>> troubles)
+    : knowledge_(knowledge), troubles_(troubles), open_(open_questions(knowledge)) {}
+
+// Asks the silent ones, as far as that is allowed now. One that has to wait for room is awaited: open questions end
+// within kLongestQuestion.
+void Questioner::ask(std::span<const ComponentId> silent, IsAllowed is_allowed,
+                     Questions& questions) {
   for (const ComponentId c : silent) {
-    const Questioned& questioned = knowledge.components[c].questioned;
-    const bool is_asked_now = open < kMostQuestions && is_allowed(questioned, knowledge.now);
-    if (is_asked_now) {
-      questions.asks.push_back(c);
-      ++open;
+    const Questioned& questioned = knowledge_.components[c].questioned;
+    bool is_asked = std::ranges::find(asked_, c) != asked_.end();
+    const bool is_due = !is_asked && is_allowed(questioned, knowledge_.now);
+    if (is_due && open_ < kMostQuestions) {
+      asked_.push_back(c);
+      ++open_;
+      is_asked = true;
     }
-    if (!questions.awaited && (is_asked_now || is_open(questioned, knowledge.now)))
+    if (is_asked) questions.asks.push_back(c);
+    if (!questions.awaited && (is_asked || is_due || is_open(questioned, knowledge_.now)))
       questions.awaited = c;
   }
 }
 
 // The publisher of messages that are lost is asked, whether it is upstream of the failure or its cause.
-void ask_publisher(const Lost& lost, RuleId failure, const Knowledge& knowledge,
-                   Questions& questions) {
-  const ComponentState& state = knowledge.components[lost.publisher];
+void Questioner::ask_publisher(const Lost& lost, RuleId failure, Questions& questions) {
+  const ComponentState& state = knowledge_.components[lost.publisher];
   // It is not asked again within kAskedAgain, so an answer counts for that long.
-  if (later(state.answered, kAskedAgain) >= knowledge.states[failure].failing_since) {
+  if (later(state.answered, kAskedAgain) >= knowledge_.states[failure].failing_since)
     questions.lost = lost;
-  } else if (is_open(state.questioned, knowledge.now)) {
-    questions.awaited = lost.publisher;
-  } else if (may_be_asked_again(state.questioned, knowledge.now) &&
-             open_questions(knowledge) < kMostQuestions) {
-    questions.asks.push_back(lost.publisher);
-    questions.awaited = lost.publisher;
-  }
+  else
+    ask({&lost.publisher, 1}, may_be_asked_again, questions);
 }
 
-}  // namespace
+void Questioner::keep_silent(std::vector<ComponentId>& components, Time since) {
+  if (components.empty()) return;
+  if (last_signs_.empty()) last_signs_ = last_signs(knowledge_);
+  std::erase_if(components, [&](ComponentId c) { return last_signs_[c.index] >= since; });
+}
 
-Questions questions_about(RuleId failure, std::span<const std::optional<TroubleSeen>> troubles,
-                          const Knowledge& knowledge) {
+Questions Questioner::about(RuleId failure) {
   Questions questions;
-  const auto lost = lost_behind(failure, knowledge);
-  if (lost && !troubles[lost->publisher.index] && can_be_asked(lost->publisher, knowledge)) {
-    ask_publisher(*lost, failure, knowledge, questions);
+  const auto lost = lost_behind(failure, knowledge_);
+  if (lost && !troubles_[lost->publisher.index] && can_be_asked(lost->publisher, knowledge_)) {
+    ask_publisher(*lost, failure, questions);
     if (questions.lost || questions.awaited) return questions;
   }
-  const Time onset = onset_of(failure, knowledge).latest;
   std::vector<ComponentId> silent;
-  for (const ComponentId c : knowledge.graph.upstream(knowledge.rules[failure].components)) {
+  for (const ComponentId c : knowledge_.graph.upstream(knowledge_.rules[failure].components)) {
     // Only its answer tells whether a silent one hangs, or is an effect.
-    const auto& trouble = troubles[c.index];
+    const auto& trouble = troubles_[c.index];
     const bool is_known = trouble && trouble->trouble != Trouble::kSilent;
-    if (!is_known && can_be_asked(c, knowledge)) silent.push_back(c);
+    if (!is_known && can_be_asked(c, knowledge_)) silent.push_back(c);
   }
-  if (silent.empty()) return questions;
-  const std::vector<Time> signs = last_signs(knowledge);
-  std::erase_if(silent,
-                [&](ComponentId c) { return signs[c.index] >= later(onset, kProvesHealth); });
+  keep_silent(silent, later(onset_of(failure, knowledge_).latest, kProvesHealth));
   std::sort(silent.begin(), silent.end(), [&](ComponentId a, ComponentId b) {
-    return knowledge.rules[a].name < knowledge.rules[b].name;
+    return knowledge_.rules[a].name < knowledge_.rules[b].name;
   });
-  keep_nearest(silent, failure, knowledge);
-  ask(silent, knowledge, may_be_asked_again, questions);
+  keep_nearest(silent, failure, knowledge_);
+  ask(silent, may_be_asked_again, questions);
   return questions;
 }
 
-Questions questions_to(std::span<const ComponentId> components, RuleId failure,
-                       const Knowledge& knowledge) {
+Questions Questioner::to(std::span<const ComponentId> components, RuleId failure) {
   Questions questions;
   std::vector<ComponentId> silent;
-  const Time begun = later(onset_of(failure, knowledge).latest, kProvesHealth);
+  const Time begun = later(onset_of(failure, knowledge_).latest, kProvesHealth);
   for (const ComponentId c : components) {
-    const ComponentState& state = knowledge.components[c];
+    const ComponentState& state = knowledge_.components[c];
     if (state.answers_probes && state.answered < begun && !answers_no_question(state) &&
-        can_be_asked(c, knowledge))
+        can_be_asked(c, knowledge_))
       silent.push_back(c);
   }
-  if (silent.empty()) return questions;
-  const std::vector<Time> signs = last_signs(knowledge);
-  std::erase_if(silent, [&](ComponentId c) { return signs[c.index] >= begun; });
-  ask(silent, knowledge, may_be_asked_at_once, questions);
+  keep_silent(silent, begun);
+  ask(silent, may_be_asked_at_once, questions);
   return questions;
 }
 

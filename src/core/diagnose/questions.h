@@ -32,21 +32,40 @@ inline constexpr Duration kProvesHealth = std::chrono::milliseconds(100);
 inline constexpr std::size_t kMostQuestions = 16;
 
 struct Questions {
-  std::vector<ComponentId> asks;       // to be asked now, nearest first
-  std::optional<ComponentId> awaited;  // whose answer is to be waited for; of those asked, too
+  std::vector<ComponentId> asks;  // to be asked now, nearest first
+  // The failure waits for its answer: one of those asked, or one that is asked once others have answered.
+  std::optional<ComponentId> awaited;
   // Lost messages explain the failure, and their publisher has answered since it began: it works, and
   // nothing is to be taken down for the failure.
   std::optional<Lost> lost;
 };
 
-// Before something is taken down for the failure. `troubles`: by component.
-Questions questions_about(RuleId failure, std::span<const std::optional<TroubleSeen>> troubles,
-                          const Knowledge& knowledge);
+// Asks on behalf of the failures of one planning step: a question of one of them counts for the others.
+class Questioner {
+ public:
+  // `troubles`: by component. Both must outlive it.
+  Questioner(const Knowledge& knowledge, std::span<const std::optional<TroubleSeen>> troubles);
 
-// Before requests are sent to these components for the failure: of those that answered ever, and gave no sign of life since
-// the failure began. Asked in vain, one is asked a second time at once.
-Questions questions_to(std::span<const ComponentId> components, RuleId failure,
-                       const Knowledge& knowledge);
+  // Before something is taken down for the failure.
+  Questions about(RuleId failure);
+
+  // Before requests are sent to these components for the failure: of those that answered ever, and gave no sign of life
+  // since the failure began. Asked in vain, one is asked a second time at once.
+  Questions to(std::span<const ComponentId> components, RuleId failure);
+
+ private:
+  using IsAllowed = bool (*)(const Questioned&, Time now);
+  void ask(std::span<const ComponentId> silent, IsAllowed is_allowed, Questions& questions);
+  void ask_publisher(const Lost& lost, RuleId failure, Questions& questions);
+  void keep_silent(std::vector<ComponentId>& components, Time since);
+
+  const Knowledge& knowledge_;
+  std::span<const std::optional<TroubleSeen>> troubles_;
+  std::size_t open_ = 0;            // questions, those of this step included
+  std::vector<ComponentId> asked_;  // in this step
+  std::vector<Time> last_signs_;    // by component; empty until it is needed
+};
+
 // Was the component asked twice in vain, since it answered last?
 bool answers_no_question(const ComponentState& state);
 

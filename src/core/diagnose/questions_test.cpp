@@ -30,7 +30,8 @@ class AMap : public ::testing::Test {
     return scene_->components[scene_.component(component)];
   }
   Questions questions() {
-    return questions_about(scene_.rule("Nav"), all_troubles(*scene_), *scene_);
+    const auto troubles = all_troubles(*scene_);
+    return Questioner(*scene_, troubles).about(scene_.rule("Nav"));
   }
   bool is_asked() { return !questions().asks.empty(); }
 
@@ -71,31 +72,68 @@ TEST_F(AMap, IsAskedAboutABadValueToo) {
   Scene scene(failure_of("map", "Map") + failure_of("nav", "Nav"));
   scene.link("map", "nav").fail("Nav");
   for (const char* each : {"map", "nav"}) scene->components[scene.component(each)].in_graph = true;
-  const Questions questions = questions_about(scene.rule("Nav"), all_troubles(*scene), *scene);
+  const auto troubles = all_troubles(*scene);
+  const Questions questions = Questioner(*scene, troubles).about(scene.rule("Nav"));
   EXPECT_EQ(questions.asks, std::vector{scene.component("map")}) << "it may serve nothing any more";
 }
 
-// All that are silent are asked at once, but never too many.
-TEST(Suppliers, AreAskedTogether) {
-  constexpr std::size_t kSuppliers = kMostQuestions + 4;
-  std::string rules = failure_of("nav", "Nav");
-  rules.replace(rules.find("x > 1"), 5, "age(/cmd) > 1s");
-  for (std::size_t s = 0; s < kSuppliers; ++s)
-    rules += "COMPONENT s" + std::to_string(s) + " NODE /s" + std::to_string(s) + "\n";
-  Scene scene(rules);
-  for (std::size_t s = 0; s < kSuppliers; ++s) scene.link("s" + std::to_string(s), "nav");
-  scene.fail("Nav");
-  scene->states.state(scene.rule("Nav")).onset = Onset{Time(89s), Time(90s)};
-  const auto asks = [&](std::size_t silent) {
+// Navigation and the arm read them all.
+class Suppliers : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kSuppliers = kMostQuestions + 4;
+
+  Suppliers() : scene_(rules()) {
     for (std::size_t s = 0; s < kSuppliers; ++s) {
-      ComponentState& state = scene->components[scene.component("s" + std::to_string(s))];
+      for (const char* consumer : {"nav", "arm"}) scene_.link("s" + std::to_string(s), consumer);
+    }
+    for (const char* failure : {"Nav", "Arm"}) {
+      scene_.fail(failure);
+      scene_->states.state(scene_.rule(failure)).onset = Onset{Time(89s), Time(90s)};
+    }
+  }
+  static std::string rules() {
+    std::string rules = failure_of("nav", "Nav") + failure_of("arm", "Arm");
+    for (std::size_t s = 0; s < kSuppliers; ++s)
+      rules += "COMPONENT s" + std::to_string(s) + " NODE /s" + std::to_string(s) + "\n";
+    return rules;
+  }
+  void silence(std::size_t silent) {
+    for (std::size_t s = 0; s < kSuppliers; ++s) {
+      ComponentState& state = scene_->components[scene_.component("s" + std::to_string(s))];
       state.in_graph = true;
       state.answered = Time(s < silent ? 89s : 91s);
     }
-    return questions_about(scene.rule("Nav"), all_troubles(*scene), *scene).asks.size();
-  };
-  EXPECT_EQ(asks(3), 3u);
-  EXPECT_EQ(asks(kSuppliers), kMostQuestions);
+    troubles_ = all_troubles(*scene_);
+  }
+
+  Scene scene_;
+  std::vector<std::optional<TroubleSeen>> troubles_;
+};
+
+TEST_F(Suppliers, AreAskedTogether) {
+  silence(3);
+  EXPECT_EQ(Questioner(*scene_, troubles_).about(scene_.rule("Nav")).asks.size(), 3u);
+}
+
+TEST_F(Suppliers, AreNeverAskedTooManyAtOnce) {
+  silence(kSuppliers);
+  Questioner questioner(*scene_, troubles_);
+  const Questions first = questioner.about(scene_.rule("Nav"));
+  EXPECT_EQ(first.asks.size(), kMostQuestions);
+  const Questions second = questioner.about(scene_.rule("Arm"));
+  EXPECT_EQ(second.asks, first.asks) << "one answer counts for both failures";
+}
+
+// Another failure asks first.
+TEST_F(Suppliers, AreWaitedForUntilTheyCanBeAsked) {
+  silence(kSuppliers);
+  const std::vector last{scene_.component("s9")};  // by name
+  scene_->components[last.front()].answers_probes = true;
+  Questioner questioner(*scene_, troubles_);
+  EXPECT_EQ(questioner.about(scene_.rule("Nav")).asks.size(), kMostQuestions);
+  const Questions more = questioner.to(last, scene_.rule("Arm"));
+  EXPECT_TRUE(more.asks.empty());
+  EXPECT_EQ(more.awaited, last.front());
 }
 
 TEST_F(AMap, IsAwaitedForAWhile) {
@@ -171,7 +209,7 @@ class ASuspect : public AMap {
   ComponentState& nav() { return state("nav"); }
   Questions questions() {
     const std::vector<ComponentId> own{scene_.component("nav")};
-    return questions_to(own, scene_.rule("Nav"), *scene_);
+    return Questioner(*scene_, {}).to(own, scene_.rule("Nav"));
   }
   void asked_in_vain_at(Time at) {
     nav().questioned.at = at;

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "base/invariant.h"
-#include "diagnose/questions.h"
 #include "diagnose/touched.h"
 #include "plan/also_ended.h"
 #include "plan/ties.h"
@@ -69,6 +68,7 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       levels_(knowledge, causes_, diagnosis_),
       exclusions_(knowledge, found_, levels_, worked_on()),
       reasons_(knowledge, weights, found_, likely_, exclusions_),
+      questioner_(knowledge, found_.troubles()),
       has_choice_(causes_.size(), false),
       tries_(causes_.size()),
       asks_(causes_.size()) {}
@@ -276,8 +276,7 @@ void PlanningStep::await_answers() {
     const bool has_to_wait = !weighed->candidate.excluded && !weighed->only_revives &&
                              (takes_down(strategy) || diagnose::mends(strategy));
     if (!has_to_wait) continue;
-    Questions questions =
-        questions_about(causes_[weighed->failure].rule, found_.troubles(), knowledge_);
+    Questions questions = questioner_.about(causes_[weighed->failure].rule);
     asks_[weighed->failure] = std::move(questions.asks);
     if (questions.lost) {
       exclude(*weighed, {Condition::kDependency, questions.lost->publisher, {}});
@@ -297,7 +296,7 @@ void PlanningStep::ask_suspects() {
     if (!may_begin || weighed->only_revives || likely_.of(weighed->failure)) continue;
     const std::vector<ComponentId> requested =
         sends_requests_to(knowledge_.rules[weighed->candidate.strategy]);
-    const Questions questions = questions_to(requested, causes_[weighed->failure].rule, knowledge_);
+    const Questions questions = questioner_.to(requested, causes_[weighed->failure].rule);
     std::vector<ComponentId>& asks = asks_[weighed->failure];
     std::ranges::copy_if(questions.asks, std::back_inserter(asks),
                          [&](ComponentId c) { return std::ranges::find(asks, c) == asks.end(); });
@@ -313,8 +312,8 @@ void PlanningStep::await(ComponentId component, WeighedCandidate& weighed) const
   const ComponentState& asked = knowledge_.components[component];
   if (!asked.answers_probes) return;
   const std::vector<ComponentId>& asks = asks_[weighed.failure];
-  const bool is_asked_now = std::ranges::find(asks, component) != asks.end();
-  const Time since = is_asked_now ? knowledge_.now : asked.questioned.at;
+  const bool is_open = asked.questioned.is_open && std::ranges::find(asks, component) == asks.end();
+  const Time since = is_open ? asked.questioned.at : knowledge_.now;
   weighed.candidate.within = later(since, kLongestQuestion) - knowledge_.now;
 }
 

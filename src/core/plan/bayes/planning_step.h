@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnose/examination.h"
+#include "diagnose/questions.h"
 #include "plan/bayes/conflict_free_set.h"
 #include "plan/bayes/exclusions.h"
 #include "plan/bayes/levels.h"
@@ -61,6 +62,7 @@ class PlanningStep {
   Levels levels_;
   Exclusions exclusions_;
   ReasonsToWait reasons_;
+  diagnose::Questioner questioner_;
   std::vector<double> stakes_;  // by failure: W_i + sum_k share(i -> k) W_k
   std::vector<WeighedCandidate> weighed_;
   std::vector<WeighedCandidate*> best_first_;
