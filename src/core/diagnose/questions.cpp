@@ -119,10 +119,19 @@ void Questioner::ask_publisher(const Lost& lost, RuleId failure, Questions& ques
     ask({&lost.publisher, 1}, may_be_asked_again, questions);
 }
 
-void Questioner::keep_silent(std::vector<ComponentId>& components, Time since) {
-  if (components.empty()) return;
-  if (last_signs_.empty()) last_signs_ = last_signs(knowledge_);
-  std::erase_if(components, [&](ComponentId c) { return last_signs_[c.index] >= since; });
+void Questioner::look() {
+  if (!last_signs_.empty()) return;
+  last_signs_ = last_signs(knowledge_);
+  for (std::size_t c = 0; c < last_signs_.size(); ++c) {
+    if (may_hang(ComponentId(c))) oldest_sign_ = std::min(oldest_sign_, last_signs_[c]);
+  }
+}
+
+// Only its answer tells whether a silent one hangs, or is an effect.
+bool Questioner::may_hang(ComponentId component) const {
+  const auto& trouble = troubles_[component.index];
+  const bool is_known = trouble && trouble->trouble != Trouble::kSilent;
+  return !is_known && can_be_asked(component, knowledge_);
 }
 
 Questions Questioner::about(RuleId failure) {
@@ -132,14 +141,13 @@ Questions Questioner::about(RuleId failure) {
     ask_publisher(*lost, failure, questions);
     if (questions.lost || questions.awaited) return questions;
   }
+  const Time begun = later(onset_of(failure, knowledge_).latest, kProvesHealth);
+  look();
+  if (oldest_sign_ >= begun) return questions;
   std::vector<ComponentId> silent;
   for (const ComponentId c : knowledge_.graph.upstream(knowledge_.rules[failure].components)) {
-    // Only its answer tells whether a silent one hangs, or is an effect.
-    const auto& trouble = troubles_[c.index];
-    const bool is_known = trouble && trouble->trouble != Trouble::kSilent;
-    if (!is_known && can_be_asked(c, knowledge_)) silent.push_back(c);
+    if (last_signs_[c.index] < begun && may_hang(c)) silent.push_back(c);
   }
-  keep_silent(silent, later(onset_of(failure, knowledge_).latest, kProvesHealth));
   std::sort(silent.begin(), silent.end(), [&](ComponentId a, ComponentId b) {
     return knowledge_.rules[a].name < knowledge_.rules[b].name;
   });
@@ -154,11 +162,12 @@ Questions Questioner::to(std::span<const ComponentId> components, RuleId failure
   const Time begun = later(onset_of(failure, knowledge_).latest, kProvesHealth);
   for (const ComponentId c : components) {
     const ComponentState& state = knowledge_.components[c];
-    if (state.answers_probes && state.answered < begun && !answers_no_question(state) &&
-        can_be_asked(c, knowledge_))
-      silent.push_back(c);
+    if (!state.answers_probes || state.answered >= begun || answers_no_question(state) ||
+        !can_be_asked(c, knowledge_))
+      continue;
+    look();
+    if (last_signs_[c.index] < begun) silent.push_back(c);
   }
-  keep_silent(silent, begun);
   ask(silent, may_be_asked_at_once, questions);
   return questions;
 }

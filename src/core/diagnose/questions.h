@@ -57,13 +57,15 @@ class Questioner {
   using IsAllowed = bool (*)(const Questioned&, Time now);
   void ask(std::span<const ComponentId> silent, IsAllowed is_allowed, Questions& questions);
   void ask_publisher(const Lost& lost, RuleId failure, Questions& questions);
-  void keep_silent(std::vector<ComponentId>& components, Time since);
+  void look();
+  bool may_hang(ComponentId component) const;
 
   const Knowledge& knowledge_;
   std::span<const std::optional<TroubleSeen>> troubles_;
   std::size_t open_ = 0;            // questions, those of this step included
   std::vector<ComponentId> asked_;  // in this step
-  std::vector<Time> last_signs_;    // by component; empty until it is needed
+  std::vector<Time> last_signs_;    // by component; empty before look()
+  Time oldest_sign_ = kNever;       // of those that may hang
 };
 
 // Was the component asked twice in vain, since it answered last?

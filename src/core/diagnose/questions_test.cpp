@@ -209,7 +209,8 @@ class ASuspect : public AMap {
   ComponentState& nav() { return state("nav"); }
   Questions questions() {
     const std::vector<ComponentId> own{scene_.component("nav")};
-    return Questioner(*scene_, {}).to(own, scene_.rule("Nav"));
+    const auto troubles = all_troubles(*scene_);
+    return Questioner(*scene_, troubles).to(own, scene_.rule("Nav"));
   }
   void asked_in_vain_at(Time at) {
     nav().questioned.at = at;
