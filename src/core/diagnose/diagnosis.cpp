@@ -124,10 +124,15 @@ double Diagnosis::kappa(std::size_t j, std::size_t i) const {
   return knowledge_.couplings.of(causes_[j].rule, causes_[i].rule).mean(expected);
 }
 
-double Diagnosis::explained(std::size_t i) const {
+double Diagnosis::against_others(std::size_t i, std::span<const std::size_t> no_causes) const {
+  return no_causes.empty() ? against_others_[i] : own_cause(prior_[i], explained(i, no_causes));
+}
+
+double Diagnosis::explained(std::size_t i, std::span<const std::size_t> no_causes) const {
   double unexplained = 1;
   for_each(causes_.causes(i), [&](std::size_t j) {
-    if (!has_better_twin(j, i)) unexplained *= 1 - passes(j, i);
+    const bool is_no_cause = std::ranges::find(no_causes, j) != no_causes.end();
+    if (!is_no_cause && !has_better_twin(j, i)) unexplained *= 1 - passes(j, i);
   });
   return 1 - unexplained;
 }

@@ -57,6 +57,8 @@ class Diagnosis {
   double of(std::size_t i) const { return own_[i]; }
   // P(own i) alone: what others outside its loop leave unexplained.
   double against_others(std::size_t i) const { return against_others_[i]; }
+  // The same, as if `no_causes` could not be the cause of it.
+  double against_others(std::size_t i, std::span<const std::size_t> no_causes) const;
   // pi_i
   double prior(std::size_t i) const { return prior_[i]; }
   // Other failures that wait for a person with j and are about one of its components; empty if j waits for none.
@@ -66,8 +68,8 @@ class Diagnosis {
   // Until when the process that node i is about may hang only because a supplier answers nothing. kLongAgo:
   // none is down; kNever: as long as one is.
   Time may_wait_until(std::size_t i) const;
-  // X_i
-  double explained(std::size_t i) const;
+  // X_i, as if `no_causes` could not be the cause of i.
+  double explained(std::size_t i, std::span<const std::size_t> no_causes = {}) const;
   // Is j alone enough for i to have no cause of its own, more likely than not?
   bool is_explained_by(std::size_t i, std::size_t j) const;
   // The node of i's loop that has a dead process, if it is alone enough for i. The operating system

@@ -47,6 +47,7 @@ LikelyCauses::LikelyCauses(const Knowledge& knowledge, const Examination& found,
       chances_(causes_.size()) {
   for (const RuleId rule : failures)
     chances_[causes_.index_of(rule)] = strategy_chances(rule, knowledge_);
+  contradicted_ = all_contradicted();
 }
 
 bool LikelyCauses::waits_for_person(std::size_t failure) const {
@@ -112,13 +113,13 @@ bool LikelyCauses::is_left_to_person(std::size_t node) const {
 }
 
 std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
-  const double own = diagnosis_.against_others(failure);
+  const double own = diagnosis_.against_others(failure, contradicted_);
   if (own >= 0.5) return diagnosis_.dead_in_loop(failure);
   std::int64_t most = 0;
   std::size_t cause = failure;
   diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
-    if (parts(share) > most && !is_contradicted(j))
-      std::tie(most, cause) = std::pair(parts(share), j);
+    const bool is_contradicted = std::ranges::find(contradicted_, j) != contradicted_.end();
+    if (parts(share) > most && !is_contradicted) std::tie(most, cause) = std::pair(parts(share), j);
   });
   if (most == 0) return std::nullopt;
   // To wait for a person in vain is worse than a strategy in vain. Not where the process upstream is known to be gone.
@@ -128,7 +129,7 @@ std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
   return cause;
 }
 
-// Is all that is left to do about the failure held back, since the components evidently work? Then nobody waits for it.
+// Is all that is left to do about the failure held back, since the components evidently work?
 bool LikelyCauses::is_contradicted(std::size_t node) const {
   const auto is_held = [&](const StrategyChance& each) {
     return each.is_withheld && knowledge_.withheld[each.strategy.index].is_contradicted;
@@ -137,6 +138,14 @@ bool LikelyCauses::is_contradicted(std::size_t node) const {
   return std::ranges::any_of(all, is_held) &&
          std::ranges::all_of(
              all, [&](const StrategyChance& each) { return each.is_out() || is_held(each); });
+}
+
+std::vector<std::size_t> LikelyCauses::all_contradicted() const {
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < chances_.size(); ++i) {
+    if (is_contradicted(i)) all.push_back(i);
+  }
+  return all;
 }
 
 bool LikelyCauses::is_exhausted(std::size_t node) const {

@@ -48,6 +48,7 @@ class LikelyCauses {
  private:
   bool is_exhausted(std::size_t node) const;
   bool is_contradicted(std::size_t node) const;
+  std::vector<std::size_t> all_contradicted() const;
   std::vector<std::optional<ComponentId>> all_unheard() const;
   std::optional<ComponentId> unheard_behind(std::size_t failure) const;
   // The first member that is not up, of a group that a strategy of the rule brings up; its manager
@@ -61,6 +62,7 @@ class LikelyCauses {
   std::vector<std::optional<ComponentId>> unheard_;  // by node
   const Time last_question_;  // to any component; most plans are made where nothing was asked
   std::vector<std::vector<StrategyChance>> chances_;  // by node
+  std::vector<std::size_t> contradicted_;             // no other failure waits for these
 };
 
 }  // namespace culprit::plan
