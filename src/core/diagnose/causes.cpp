@@ -115,12 +115,17 @@ bool is_left_to(RuleId j, std::span<const ComponentId> mended, const Knowledge& 
          std::ranges::all_of(about, [&](ComponentId c) { return contains(mended, c); });
 }
 
-// May a rule other than `i` yet mend what is wrong with the component?
-bool is_mended_by_another(ComponentId component, RuleId i, const Knowledge& knowledge) {
-  return std::ranges::any_of(knowledge.states.touching(component), [&](RuleId rule) {
+// Is it left to rule i to mend the component in trouble, with all that it mends (`mended`)? Not if culprit never saw the
+// component, which it does not start then, or if another rule may yet mend it. One that has not fired for so long does
+// not see the trouble.
+bool is_trouble_left_to(RuleId i, const CauseNode& trouble, std::span<const ComponentId> mended,
+                        const Knowledge& knowledge) {
+  if (trouble.trouble == Trouble::kNeverSeen || !contains(mended, trouble.component)) return false;
+  if (later(trouble.onset.latest, kLongestPlainEvidence) <= knowledge.now) return true;
+  return std::ranges::none_of(knowledge.states.touching(trouble.component), [&](RuleId rule) {
     return rule != i && knowledge.states[rule].detection.trigger.known &&
            !knowledge.states.awaits_person(rule) &&
-           contains(mended_by(rule, knowledge.rules), component);
+           contains(mended_by(rule, knowledge.rules), trouble.component);
   });
 }
 
@@ -272,11 +277,10 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
     clear(row, i);
     for_each(row, [&](std::size_t j) {
       const bool is_trouble = nodes_[j].kind == CauseNode::Kind::kTrouble;
-      const bool is_own =
-          is_trouble ? contains(touched, nodes_[j].component) ||
-                           (contains(mended, nodes_[j].component) &&
-                            !is_mended_by_another(nodes_[j].component, nodes_[i].rule, knowledge))
-                     : is_left_to(nodes_[j].rule, mended, knowledge);
+      const bool is_own = is_trouble
+                              ? contains(touched, nodes_[j].component) ||
+                                    is_trouble_left_to(nodes_[i].rule, nodes_[j], mended, knowledge)
+                              : is_left_to(nodes_[j].rule, mended, knowledge);
       const bool is_possible =
           is_trouble
               ? !is_own && can_explain(j, i, knowledge) && !may_be_effect(j, i, reach, knowledge)

@@ -118,8 +118,8 @@ std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
   std::int64_t most = 0;
   std::size_t cause = failure;
   diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
-    const bool is_contradicted = std::ranges::find(contradicted_, j) != contradicted_.end();
-    if (parts(share) > most && !is_contradicted) std::tie(most, cause) = std::pair(parts(share), j);
+    const bool is_no_cause = std::ranges::find(contradicted_, j) != contradicted_.end();
+    if (parts(share) > most && !is_no_cause) std::tie(most, cause) = std::pair(parts(share), j);
   });
   if (most == 0) return std::nullopt;
   // To wait for a person in vain is worse than a strategy in vain. Not where the process upstream is known to be gone.
