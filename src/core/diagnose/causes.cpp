@@ -6,6 +6,7 @@
 
 #include "base/invariant.h"
 #include "diagnose/imminent.h"
+#include "diagnose/known_down.h"
 #include "diagnose/touched.h"
 
 namespace culprit::diagnose {
@@ -108,11 +109,20 @@ bool is_left_to_person(RuleId rule, const Knowledge& knowledge) {
   return knowledge.rules[rule].strategies.empty() || knowledge.states.awaits_person(rule);
 }
 
-// Is rule j left to a person, though another one mends all that it is about (`mended`)?
+bool is_replaced_by(RuleId rule, ComponentId component, const RuleSet& rules) {
+  return std::ranges::any_of(rules[rule].strategies, [&](StrategyId id) {
+    return !rules[id].is_last_resort && replaces(rules[id], component);
+  });
+}
+
+// Is rule j left to a person, though another one mends all that it is about (`mended`)? Not if j has replaced that itself,
+// in vain.
 bool is_left_to(RuleId j, std::span<const ComponentId> mended, const Knowledge& knowledge) {
   const std::vector<ComponentId> about = touched_by(j, knowledge);
   return !about.empty() && is_left_to_person(j, knowledge) &&
-         std::ranges::all_of(about, [&](ComponentId c) { return contains(mended, c); });
+         std::ranges::all_of(about, [&](ComponentId c) {
+           return contains(mended, c) && !is_replaced_by(j, c, knowledge.rules);
+         });
 }
 
 // Is it left to rule i to mend the component in trouble, with all that it mends (`mended`)? Not if culprit never saw the
