@@ -6,7 +6,8 @@
 // blameless if the rule reads outages of it, and
 //   1. the trigger would be true if none of them were bad, so nothing that is done to the component can end the failure; and
 //   2. the trigger would not be true if none of those of the rule's other components were bad, so one of them is the reason.
-// A value that some component measures may be bad because of any other, so values never make a component blameless.
+// A value that some component measures may be bad because of any other, so values never make a component blameless. If the
+// known death of a component made the trigger true, its topics count as silent already, as they will be.
 #pragma once
 
 #include "knowledge/knowledge.h"

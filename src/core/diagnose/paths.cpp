@@ -53,8 +53,8 @@ bool has_heard(RuleId rule, const Knowledge& knowledge) {
   });
 }
 
-// May the values by which the rule fails end what the consumers of `component` send? Not another state of the robot's mission; and
-// where nothing is broken, as the rule only reconfigures, only if a DEPENDENCY says that others need it.
+// May the failing values of the rule end the data of the component's consumers? Not if the rule has ON_CHANGE: the robot is
+// in another state of its mission. A rule that only reconfigures finds nothing broken; then a DEPENDENCY must name the supplier.
 bool may_end_data(RuleId id, ComponentId component, const RuleSet& rules) {
   const Rule& rule = rules[id];
   if (rule.policies.on_change) return false;

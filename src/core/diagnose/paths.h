@@ -1,21 +1,22 @@
-// The paths along which a failure can have spread: the graph without the healthy parts.
+// The paths along which a failure can have spread: the graph without the parts that evidently passed nothing on.
 //
-// A chain of effects does not go through a component that shows none. Left out, for failures of one
-// kind of symptom (an outage, or a bad value), are
-//   - components that are well: a rule of that kind touches them and is quiet, no rule that touches
-//     them fails or is imminent, none of their topics has become slow, and they are in no trouble. Bad
-//     data may end their consumer, though they arrive, unless the rule only reconfigures. A rule that
-//     tells nothing of data (timing.h) does not count: that a node answers or is active is no proof
-//     that anything comes through it;
-//   - topics and services that evidently carry no failures: of n consumers that are well or
-//     fail, more are well than kSpared n and kDeviations standard deviations of the binomial
-//     distribution. /tf and its like are read by many. A consumer that is quiet counts once its rules would have
-//     fired for the failure of the producer: it may go on for a while with what it has.
-// A failure for which evidence can still come (awaited.h) has the whole graph: a quiet rule between
-// may only not have fired yet.
+// A failure does not spread through a component that shows no effect of it. For failures of one symptom (an outage, or a
+// bad value), these are left out:
+//   - components that are well. All of this holds for such a component:
+//       - a quiet rule about it would show the symptom. A rule that tells nothing of data (timing.h) does not count: a node
+//         that answers or is active may still pass no data on;
+//       - no rule about it fails or is imminent for an outage, nor, if the symptom is a bad value, for a value;
+//       - no bad value of it may end the data of its consumers. A value may, unless its rule has ON_CHANGE; or only
+//         reconfigures, and no DEPENDENCY names the component as a supplier;
+//       - no steady topic of it has become slow;
+//       - it is in no trouble (trouble.h);
+//   - topics and services through which evidently nothing spreads, such as /tf, which many read. n consumers are well or
+//     fail, and more of them are well than kSpared n plus kDeviations standard deviations of the binomial distribution. A
+//     quiet consumer counts once its rules would have fired for the producer's failure: it may go on for a while.
+// For a failure for which evidence can still come (awaited.h), nothing is left out: a quiet rule between may fire yet.
 //
-// This separates causes from components that are merely upstream: on a robot with feedback loops, or
-// with topics that all nodes read, everything is upstream of everything.
+// On a robot with feedback loops, or with topics that all nodes read, everything is upstream of everything. This separates
+// the causes from components that are merely upstream.
 #pragma once
 
 #include <array>

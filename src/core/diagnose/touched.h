@@ -7,10 +7,12 @@
 
 namespace culprit::diagnose {
 
-// The components by which a failure of the rule is explained: those that its strategies adapt, but for
-// what only a last resort adapts, or what is only paused for the sake of others: deactivated, and
-// activated again later in the same strategy. If it mends some of those that publish what the rule reads, only these: the others
-// are adapted beside them. Nor is it about one that it shows itself to be well (blameless.h). A rule that only reports is about those that it names, or that publish what it reads.
+// The components that a failure of the rule is about, ascending:
+//   - those that it repairs (Rule::repaired);
+//   - if it mends some of those that publish what it reads, only these: the others are adapted beside them;
+//   - without those that it shows itself to be well (blameless.h).
+// A rule that repairs nothing is about the components that its last resorts adapt; one that only reports, about those that
+// publish what it reads.
 std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge);
 
 // Does the strategy begin a component anew, or call one of its routines (which may cycle the power of a

@@ -1,27 +1,28 @@
-// Which components leave together, whether a person ended them, and what culprit started in their place.
+// Which components leave together, whether a person ended them, and which processes culprit started in their place.
 //
-// A launch is a process (a launch file, a shell) with the components that it started. On Ctrl-C all of
-// them get the same signal, and end one after the other, each in its own time. A component that culprit
-// starts while its launcher runs stands in for the launch: it belongs to the launch, and ends with it.
+// A launch is a process (a launch file, a shell) with the components that it started. Ctrl-C signals all of them, and they
+// end one after the other. If culprit starts a component while its launcher runs, the new process stands in for the launch:
+// it belongs to the launch, and ends with it.
 //
-//   one component exits cleanly        the others may be about to: it is held back for kAlone
-//   one fails, as also on Ctrl-C       likewise, for kFailedAlone
-//   several do                         they leave together, until none has for kTogether
-//   the launcher ends with them        the launch has ended. Its components stay down until a person
-//                                      starts one again, or orders so (Revive). One that runs on for
-//                                      kTogether, crashes later than kDoubt, or that culprit ends, is
-//                                      of no launch from then on
-//   a person started it again, or      it has kBack to come up
-//   continued its stopped process
+//   event                                 culprit's answer
+//   a component exits cleanly             it waits for kAlone, since the others may follow
+//   a component fails as also on Ctrl-C   likewise, for kFailedAlone
+//   several exit or fail so               they leave together; it waits until none has for kTogether
+//   the launcher ends with them           the launch has ended, and its components stay down until a person starts one
+//                                         again, or orders so (Revive)
+//   a person starts a component again,    it waits for kBack while the component comes up
+//   or continues its stopped process
 //
-// A launch that lived on for kDoubt after a crash was ended by a person. One that ends sooner may have
-// ended because of the crash (on_exit=Shutdown() in a launch file): that is in doubt. So is the end of a
-// launch after the only process that left failed with an error that Ctrl-C may have led to. These are
-// not the end of a launch:
+// A component of an ended launch belongs to no launch any more if it runs on for kTogether, crashes later than kDoubt, or
+// culprit ends it.
 //
-//   the launcher crashed, or only its own process ended      its nodes run on
-//   all that it ran had crashed                              it had nothing left to do
-//   culprit ended one of its components within kDoubt        the launch ended because of that
+// Did a person end the launch? If it lived on for kDoubt after a crash, yes. If it ended sooner, that is in doubt: the crash
+// may have ended it (on_exit=Shutdown() in a launch file). It is in doubt, too, if only one process left, with an error that
+// Ctrl-C may have led to. In these cases the launch has not ended:
+//
+//   the launcher crashed, or only its own process ended    its nodes run on
+//   all its processes had crashed                          it had nothing left to do
+//   culprit ended one of its components within kDoubt      the launch ended because of that
 #pragma once
 
 #include <optional>

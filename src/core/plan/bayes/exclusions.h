@@ -21,8 +21,7 @@ bool takes_down(const Strategy& strategy);
 // Places (see Reach) where something stands against adapting them, and why.
 class Exclusions {
  public:
-  // `failures` are those to be decided about, without those that wait for a person: yielding to them
-  // would block the others as long.
+  // `failures`: those to be decided about for which a strategy may begin. Yielding to the others would block these as long.
   Exclusions(const Knowledge& knowledge, const diagnose::Examination& found, const Levels& levels,
              std::span<const RuleId> failures);
 
