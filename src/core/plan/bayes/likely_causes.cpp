@@ -129,15 +129,19 @@ std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
   return cause;
 }
 
-// Is all that is left to do about the failure held back, since the components evidently work?
+// Do the components that the failure is about evidently work, so that all that is left to do at them is held back?
 bool LikelyCauses::is_contradicted(std::size_t node) const {
-  const auto is_held = [&](const StrategyChance& each) {
-    return each.is_withheld && knowledge_.withheld[each.strategy.index].is_contradicted;
-  };
-  const std::vector<StrategyChance>& all = chances_[node];
-  return std::ranges::any_of(all, is_held) &&
-         std::ranges::all_of(
-             all, [&](const StrategyChance& each) { return each.is_out() || is_held(each); });
+  std::vector<ComponentId> at_work;
+  for (const StrategyChance& each : chances_[node]) {
+    if (each.is_out()) continue;
+    if (!each.is_withheld || !knowledge_.withheld[each.strategy.index].is_contradicted)
+      return false;
+    std::ranges::copy(knowledge_.rules[each.strategy].components, std::back_inserter(at_work));
+  }
+  return !at_work.empty() &&
+         std::ranges::all_of(touched_by(causes_[node].rule, knowledge_), [&](ComponentId c) {
+           return std::ranges::find(at_work, c) != at_work.end();
+         });
 }
 
 std::vector<std::size_t> LikelyCauses::all_contradicted() const {

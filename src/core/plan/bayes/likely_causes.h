@@ -22,8 +22,8 @@ class LikelyCauses {
                std::span<const RuleId> failures);
 
   // The likeliest cause outside its loop, if the failure more likely has one than not (an exhausted
-  // cause: twice as likely); or else the member of its loop that is known to be dead. No cause is a failure whose remaining
-  // strategies are held back because their components evidently work.
+  // cause: twice as likely); or else the member of its loop that is known to be dead. A failure about components
+  // that evidently work is no cause.
   std::optional<std::size_t> of(std::size_t failure) const;
   // The component on an unreachable computer that the failure is about, or can have spread from. It
   // explains the failure for sure; a learned coupling does not.
