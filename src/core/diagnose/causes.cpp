@@ -126,12 +126,15 @@ bool is_left_to(RuleId j, std::span<const ComponentId> mended, const Knowledge& 
 }
 
 // Is it left to rule i to mend the component in trouble, with all that it mends (`mended`)? Not if culprit never saw the
-// component, which it does not start then, or if another rule may yet mend it. One that has not fired for so long does
-// not see the trouble.
+// component, which it does not start then; and for a while not if that is being started, or another rule may yet mend it:
+// one that has not fired for so long does not see the trouble.
 bool is_trouble_left_to(RuleId i, const CauseNode& trouble, std::span<const ComponentId> mended,
                         const Knowledge& knowledge) {
   if (trouble.trouble == Trouble::kNeverSeen || !contains(mended, trouble.component)) return false;
-  if (later(trouble.onset.latest, kLongestPlainEvidence) <= knowledge.now) return true;
+  const ComponentState& state = knowledge.components[trouble.component];
+  const auto is_recent = [&](Time at) { return knowledge.now < later(at, kLongestPlainEvidence); };
+  if (state.is_coming_up() && is_recent(state.process_since)) return false;
+  if (!is_recent(trouble.onset.latest)) return true;
   return std::ranges::none_of(knowledge.states.touching(trouble.component), [&](RuleId rule) {
     return rule != i && knowledge.states[rule].detection.trigger.known &&
            !knowledge.states.awaits_person(rule) &&

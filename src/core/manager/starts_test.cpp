@@ -64,6 +64,29 @@ TEST_P(Starts, BeyondTheBoundOfRestartsAreOnlyDelayed) {
   EXPECT_TRUE(robot.works("camera"));
 }
 
+// Its launcher starts it again: a rule that would replace it, too, or its consumer, replaces neither meanwhile.
+TEST(AStartByOthers, OfASupplierIsAwaitedByARuleThatReplacesItToo) {
+  TestRobot robot(R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+RULE Fused
+  POLICIES ERROR
+  TRIGGER age(/fused) > 700ms
+    STRATEGY fusion_redeploy 80 10
+      ADAPTATION fusion redeploy 5
+    STRATEGY camera_redeploy 60 10
+      ADAPTATION camera redeploy 5
+)");
+  robot.add("camera", {}, "/rgb").start_time = 5s;
+  robot.add("fusion", {"camera"}, "/fused");
+  robot.discover(4s);
+  robot.kill("camera");
+  robot.start_by_hand("camera", 10s);
+  EXPECT_EQ(robot.count("Fused detected"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked(" process")) << transcript(robot);
+  EXPECT_TRUE(robot.works("fusion"));
+}
+
 // It crashes a second after each start.
 TEST_P(Starts, OfWhatCrashesAgainAndAgainGetFewer) {
   Manager::Options options;
