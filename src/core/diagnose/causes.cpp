@@ -212,11 +212,15 @@ void Causes::add_rules(const Knowledge& knowledge, std::span<const RuleId> immin
          {},
          {},
          is_imminent ? onset_now(rule, knowledge.now, knowledge) : onset_of_node(rule, knowledge),
-         is_imminent ? states[rule].detection.last_false : states[rule].worked_until});
+         {}});
     CauseNode& node = nodes_.back();
     node.is_outage = symptom_of(rule, knowledge) == Symptom::kOutage;
     node.first_onset = is_imminent ? node.onset.latest
                                    : std::min(node.onset.latest, first_onset_of(rule, knowledge));
+    // A rule may be false for long after the onset: age(/c) > 30s.
+    node.worked_until =
+        std::min(is_imminent ? states[rule].detection.last_false : states[rule].worked_until,
+                 node.first_onset);
     if (!is_imminent) node.unclear_until = unclear_until(rule, knowledge);
   }
 }
@@ -245,6 +249,7 @@ void Causes::add_troubles(const Knowledge& knowledge,
   for (const ComponentId c : components) {
     const TroubleSeen& seen = *troubles[c.index];
     nodes_.push_back({CauseNode::Kind::kTrouble, {}, c, seen.trouble, {}, seen.onset});
+    nodes_.back().first_onset = seen.first_onset;
   }
 }
 
@@ -394,7 +399,11 @@ bool Causes::can_precede(std::size_t j, std::size_t i) const {
 }
 
 double Causes::timely(std::size_t j, std::size_t i) const {
-  const Time began = nodes_[j].onset.latest;
+  const CauseNode& cause = nodes_[j];
+  const bool was_another_before =
+      cause.kind == CauseNode::Kind::kTrouble && cause.onset.latest > nodes_[i].onset.latest;
+  const Time began =
+      was_another_before ? std::min(cause.onset.latest, cause.first_onset) : cause.onset.latest;
   const Time worked = nodes_[i].worked_until;
   if (began == kLongAgo || began == kNever || worked <= later(began, kUsualDelay)) return 1;
   const double share = seconds(kUsualDelay) / seconds(worked - began);

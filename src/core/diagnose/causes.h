@@ -47,7 +47,8 @@ struct CauseNode {
   std::string channel{};    // kUnsupplied: the topic or service
   Onset onset;
   Time worked_until = kLongAgo;  // of a rule: when it was seen to be well last
-  Time first_onset = kNever;     // of a rule: the latest onset of its first detection
+  // The latest onset of the first detection of a rule, or of the trouble that the component had before this one.
+  Time first_onset = kNever;
   // Of a failure: when its component began anew, or a cause of it cleared, and it was there still.
   Time unclear_until = kLongAgo;
   bool is_outage = false;  // of a rule: that reads no values

@@ -1,5 +1,7 @@
 #include "diagnose/trouble.h"
 
+#include <algorithm>
+
 #include "diagnose/known_down.h"
 #include "diagnose/lost.h"
 #include "diagnose/questions.h"
@@ -10,8 +12,8 @@ namespace {
 Onset at(Time since) { return {since, since}; }
 
 // `published` is that of all components, once one of them hangs: it takes a look at each topic.
-std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>& published,
-                                       const Knowledge& knowledge) {
+std::optional<TroubleSeen> present_trouble(ComponentId component, std::vector<Time>& published,
+                                           const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[component];
   if (state.process == ProcessState::kGone)
     return TroubleSeen{Trouble::kExited, at(state.process_since)};
@@ -30,6 +32,18 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>&
     return TroubleSeen{state.was_active ? Trouble::kNotActive : Trouble::kNotYetActive,
                        at(state.lifecycle_since)};
   return std::nullopt;
+}
+
+// A trouble that follows another one goes back to the onset of that: what needed the component did not work since.
+std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>& published,
+                                       const Knowledge& knowledge) {
+  auto seen = present_trouble(component, published, knowledge);
+  const auto& first = knowledge.components[component].troubled;
+  if (seen && first && first->latest < seen->onset.latest) {
+    seen->onset.earliest = std::min(seen->onset.earliest, first->earliest);
+    seen->first_onset = first->latest;
+  }
+  return seen;
 }
 
 }  // namespace

@@ -29,8 +29,9 @@ bool answers_nothing(Trouble trouble);
 
 struct TroubleSeen {
   Trouble trouble = Trouble::kExited;
-  Onset onset;
+  Onset onset;                     // `earliest` of the first trouble: it hung, and was killed
   std::optional<TopicId> topic{};  // kSilent: that is silent
+  Time first_onset = kNever;       // the latest onset of that
 };
 
 // The worst known trouble of the component now; empty: no trouble is known. A component on an

@@ -7,6 +7,7 @@
 
 #include "knowledge/coming_up.h"
 #include "knowledge/event_log.h"
+#include "knowledge/onset.h"
 #include "language/rule_set.h"
 #include "robot/observation.h"
 
@@ -98,6 +99,9 @@ struct ComponentState {
   std::optional<bool> alive;
   Time alive_since = kLongAgo;  // when that changed last
   bool is_missed = false;       // it was never seen, and had its time to show itself
+  // The onset of what keeps it from working, also if that became another trouble meanwhile: it hung, and was killed.
+  // Empty: it works, as far as is known. Set by note_trouble().
+  std::optional<Onset> troubled{};
 
   // The other computer that its node ran on last (LivesOn); empty: it was this one, or is not known.
   std::string host;
@@ -111,6 +115,17 @@ struct ComponentState {
 
   // Its process runs, or is somewhere else, and it does nothing more.
   bool hangs() const { return in_graph && process == ProcessState::kRunning && alive == false; }
+
+  // To be called after its process, its lifecycle or its being alive may have changed `at` then.
+  void note_trouble(Time at) {
+    const bool is_managed = lifecycle != Lifecycle::kUnknown;
+    const bool works = process == ProcessState::kRunning && alive != false &&
+                       (!is_managed || lifecycle == Lifecycle::kActive);
+    if (works)
+      troubled.reset();
+    else if (!troubled)
+      troubled = Onset{hangs() ? answered : at, at};
+  }
 
   // Though it answers nothing, it may take up a request when it goes on.
   bool may_still_obey() const { return in_graph && process != ProcessState::kGone; }

@@ -200,6 +200,7 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
     state.past_trouble = PastTrouble{state.lifecycle_since, at};
   if (seen.state != state.lifecycle) state.lifecycle_since = at;
   state.lifecycle = seen.state;
+  state.note_trouble(at);
   state.was_active |= seen.state == Lifecycle::kActive;
   if (seen.state != Lifecycle::kTransition) {
     state.changes_until = kNever;
@@ -540,6 +541,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
 }
 
 void Monitor::update_alive_inputs(ComponentId component, Time now, const Slot& value) {
+  write_.components[component].note_trouble(now);
   for (const InputId id : component_inputs_[component.index]) {
     if (knowledge_.rules[id].kind == Kind::kAlive) write_.signals.set(id, value);
   }
