@@ -156,8 +156,8 @@ StormWatch::IllRoots StormWatch::ill_roots(const std::vector<bool>& suspects) co
       const auto& upstream = knowledge_.graph.upstream(component);
       const bool is_explained =
           std::any_of(upstream.begin(), upstream.end(), [&](ComponentId other) {
-            return other != component &&
-                   (is_dead_[other.index] || suspects[other.index] || is_or_was_ill(other, id));
+            return other != component && (is_dead_[other.index] || suspects[other.index] ||
+                                          is_or_was_ill(other, id) || was_in_trouble(other, id));
           });
       if (is_explained) continue;
       roots.push_back(component);
@@ -182,6 +182,13 @@ bool StormWatch::is_or_was_ill(ComponentId component, RuleId except) const {
   return std::ranges::any_of(knowledge_.states.touching(component), [&](RuleId rule) {
     return rule != except && recent_[rule.index].began != kLongAgo;
   });
+}
+
+// Was it in trouble when the failure began, and works again?
+bool StormWatch::was_in_trouble(ComponentId component, RuleId failure) const {
+  const auto& past = knowledge_.components[component].past_trouble;
+  const auto& onset = knowledge_.states[failure].onset;
+  return past && onset && past->since <= onset->latest && onset->earliest <= past->over;
 }
 
 }  // namespace culprit::execute

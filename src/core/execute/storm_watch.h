@@ -3,7 +3,7 @@
 // A storm: many components have failed that nothing upstream explains. (NodeHealthCheck's
 // minHealthy, with the dependency graph taken into account: a dead camera with all its consumers is
 // no storm, also before its own alarm; nor are exited processes, whose cause is clear; nor failures that wait for a rule
-// that can still fire.) Failures that
+// that can still fire, or that began with a trouble that is over.) Failures that
 // began within `together` count together, although some may have been repaired already. A graph in doubt:
 // nodes vanished from the graph although their processes run, or those of other computers do not answer
 // although these are reachable. Then the network is more likely at fault than all of the nodes.
@@ -61,6 +61,7 @@ class StormWatch {
   };
   IllRoots ill_roots(const std::vector<bool>& suspects) const;
   bool is_or_was_ill(ComponentId component, RuleId except) const;
+  bool was_in_trouble(ComponentId component, RuleId failure) const;
   bool has_clear_cause(RuleId failure, ComponentId component) const;
   bool is_much(std::size_t components) const;
 
