@@ -1,24 +1,32 @@
 #include "diagnose/questions.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace culprit::diagnose {
 namespace {
 
 using Vertex = DependencyGraph::Vertex;
 
-bool is_open(const Questioned& questioned, Time now) {
-  return questioned.is_open && now < later(questioned.at, kLongestQuestion);
+bool is_open(const ComponentState& state, Time now) {
+  return state.questioned.is_open && now < later(state.questioned.at, kLongestQuestion);
 }
 
-bool may_be_asked_again(const Questioned& questioned, Time now) {
-  return !is_open(questioned, now) && now >= later(questioned.at, kAskedAgain);
+bool has_answered(const ComponentState& state) {
+  return state.questioned.at != kLongAgo && state.answered >= state.questioned.at;
+}
+
+// One that answered may have hung right afterwards.
+bool may_be_asked_again(const ComponentState& state, Time now) {
+  const Duration pause = has_answered(state) ? kLongestQuestion : kAskedAgain;
+  return !is_open(state, now) && now >= later(state.questioned.at, pause);
 }
 
 // As may_be_asked_again(), but for the second question after a first one in vain.
-bool may_be_asked_at_once(const Questioned& questioned, Time now) {
+bool may_be_asked_at_once(const ComponentState& state, Time now) {
+  const Questioned& questioned = state.questioned;
   const bool is_second = questioned.unanswered == questioned.at && !questioned.is_open;
-  return is_second || may_be_asked_again(questioned, now);
+  return is_second || may_be_asked_again(state, now);
 }
 
 // When each component proved last that it works: it joined the graph, it answered, or a message came
@@ -80,7 +88,7 @@ void keep_nearest(std::vector<ComponentId>& components, RuleId failure,
 std::size_t open_questions(const Knowledge& knowledge) {
   std::size_t open = 0;
   for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c)
-    open += is_open(knowledge.components[ComponentId(c)].questioned, knowledge.now) ? 1 : 0;
+    open += is_open(knowledge.components[ComponentId(c)], knowledge.now) ? 1 : 0;
   return open;
 }
 
@@ -90,22 +98,22 @@ Questioner::Questioner(const Knowledge& knowledge,
                        std::span<const std::optional<TroubleSeen>> troubles)
     : knowledge_(knowledge), troubles_(troubles), open_(open_questions(knowledge)) {}
 
-// Asks the silent ones, as far as that is allowed now. One that has to wait for room is awaited: open questions end
+// Asks the silent ones, as far as that is allowed now. One that has to wait for room is awaited, too: open questions end
 // within kLongestQuestion.
 void Questioner::ask(std::span<const ComponentId> silent, IsAllowed is_allowed,
                      Questions& questions) {
   for (const ComponentId c : silent) {
-    const Questioned& questioned = knowledge_.components[c].questioned;
+    const ComponentState& state = knowledge_.components[c];
     bool is_asked = std::ranges::find(asked_, c) != asked_.end();
-    const bool is_due = !is_asked && is_allowed(questioned, knowledge_.now);
+    const bool is_due = !is_asked && is_allowed(state, knowledge_.now);
     if (is_due && open_ < kMostQuestions) {
       asked_.push_back(c);
       ++open_;
       is_asked = true;
     }
     if (is_asked) questions.asks.push_back(c);
-    if (!questions.awaited && (is_asked || is_due || is_open(questioned, knowledge_.now)))
-      questions.awaited = c;
+    const bool is_awaited = is_asked || is_due || is_open(state, knowledge_.now);
+    if (!questions.awaited && is_awaited) questions.awaited = c;
   }
 }
 
@@ -134,7 +142,19 @@ bool Questioner::may_hang(ComponentId component) const {
   return !is_known && can_be_asked(component, knowledge_);
 }
 
-Questions Questioner::about(RuleId failure) {
+// Upstream of all that its rule adapts, and what the rule adapts itself upstream of the strategy.
+std::vector<ComponentId> Questioner::suppliers(const Strategy& strategy) const {
+  const std::vector<ComponentId>& adapted = knowledge_.rules[strategy.rule].components;
+  std::vector<ComponentId> all = knowledge_.graph.upstream(adapted);
+  if (adapted.size() == strategy.components.size()) return all;
+  const auto& upstream = knowledge_.graph.upstream(strategy.components);
+  std::ranges::copy_if(upstream, std::back_inserter(all),
+                       [&](ComponentId c) { return std::ranges::find(all, c) == all.end(); });
+  return all;
+}
+
+Questions Questioner::about(const Strategy& strategy) {
+  const RuleId failure = strategy.rule;
   Questions questions;
   const auto lost = lost_behind(failure, knowledge_);
   if (lost && !troubles_[lost->publisher.index] && can_be_asked(lost->publisher, knowledge_)) {
@@ -145,7 +165,7 @@ Questions Questioner::about(RuleId failure) {
   look();
   if (oldest_sign_ >= begun) return questions;
   std::vector<ComponentId> silent;
-  for (const ComponentId c : knowledge_.graph.upstream(knowledge_.rules[failure].components)) {
+  for (const ComponentId c : suppliers(strategy)) {
     if (last_signs_[c.index] < begun && may_hang(c)) silent.push_back(c);
   }
   std::sort(silent.begin(), silent.end(), [&](ComponentId a, ComponentId b) {
@@ -189,7 +209,7 @@ bool is_overdue(ComponentId component, const Knowledge& knowledge) {
 
 bool is_to_be_asked_again(ComponentId component, const Knowledge& knowledge) {
   return is_overdue(component, knowledge) &&
-         may_be_asked_again(knowledge.components[component].questioned, knowledge.now);
+         may_be_asked_again(knowledge.components[component], knowledge.now);
 }
 
 }  // namespace culprit::diagnose

@@ -23,7 +23,7 @@ namespace culprit::diagnose {
 inline constexpr Duration kAnswersWithin = std::chrono::milliseconds(500);
 // So long the answer to a question is waited for: until it is known that none came.
 inline constexpr Duration kLongestQuestion = std::chrono::milliseconds(600);
-// A component is not asked again before.
+// A component is not asked again before; if it answered, not before kLongestQuestion.
 inline constexpr Duration kAskedAgain = std::chrono::seconds(2);
 // A sign of life counts from so long after the onset on: the component may have hung right after an
 // earlier one.
@@ -46,19 +46,20 @@ class Questioner {
   // `troubles`: by component. Both must outlive it.
   Questioner(const Knowledge& knowledge, std::span<const std::optional<TroubleSeen>> troubles);
 
-  // Before something is taken down for the failure.
-  Questions about(RuleId failure);
+  // Before the strategy takes something down for its failure.
+  Questions about(const Strategy& strategy);
 
   // Before requests are sent to these components for the failure: of those that answered ever, and gave no sign of life
   // since the failure began. Asked in vain, one is asked a second time at once.
   Questions to(std::span<const ComponentId> components, RuleId failure);
 
  private:
-  using IsAllowed = bool (*)(const Questioned&, Time now);
+  using IsAllowed = bool (*)(const ComponentState&, Time now);
   void ask(std::span<const ComponentId> silent, IsAllowed is_allowed, Questions& questions);
   void ask_publisher(const Lost& lost, RuleId failure, Questions& questions);
   void look();
   bool may_hang(ComponentId component) const;
+  std::vector<ComponentId> suppliers(const Strategy& strategy) const;
 
   const Knowledge& knowledge_;
   std::span<const std::optional<TroubleSeen>> troubles_;

@@ -11,6 +11,10 @@ using namespace std::chrono_literals;
 using plan::failure_of;
 using plan::Scene;
 
+const Strategy& first_strategy(const Scene& scene, const std::string& rule) {
+  return scene.rules()[scene.rules()[scene.rule(rule)].strategies.front()];
+}
+
 // map -> nav; navigation was silent from the 90th second on.
 class AMap : public ::testing::Test {
  protected:
@@ -31,7 +35,7 @@ class AMap : public ::testing::Test {
   }
   Questions questions() {
     const auto troubles = all_troubles(*scene_);
-    return Questioner(*scene_, troubles).about(scene_.rule("Nav"));
+    return Questioner(*scene_, troubles).about(first_strategy(scene_, "Nav"));
   }
   bool is_asked() { return !questions().asks.empty(); }
 
@@ -73,7 +77,7 @@ TEST_F(AMap, IsAskedAboutABadValueToo) {
   scene.link("map", "nav").fail("Nav");
   for (const char* each : {"map", "nav"}) scene->components[scene.component(each)].in_graph = true;
   const auto troubles = all_troubles(*scene);
-  const Questions questions = Questioner(*scene, troubles).about(scene.rule("Nav"));
+  const Questions questions = Questioner(*scene, troubles).about(first_strategy(scene, "Nav"));
   EXPECT_EQ(questions.asks, std::vector{scene.component("map")}) << "it may serve nothing any more";
 }
 
@@ -112,15 +116,15 @@ class Suppliers : public ::testing::Test {
 
 TEST_F(Suppliers, AreAskedTogether) {
   silence(3);
-  EXPECT_EQ(Questioner(*scene_, troubles_).about(scene_.rule("Nav")).asks.size(), 3u);
+  EXPECT_EQ(Questioner(*scene_, troubles_).about(first_strategy(scene_, "Nav")).asks.size(), 3u);
 }
 
 TEST_F(Suppliers, AreNeverAskedTooManyAtOnce) {
   silence(kSuppliers);
   Questioner questioner(*scene_, troubles_);
-  const Questions first = questioner.about(scene_.rule("Nav"));
+  const Questions first = questioner.about(first_strategy(scene_, "Nav"));
   EXPECT_EQ(first.asks.size(), kMostQuestions);
-  const Questions second = questioner.about(scene_.rule("Arm"));
+  const Questions second = questioner.about(first_strategy(scene_, "Arm"));
   EXPECT_EQ(second.asks, first.asks) << "one answer counts for both failures";
 }
 
@@ -130,7 +134,7 @@ TEST_F(Suppliers, AreWaitedForUntilTheyCanBeAsked) {
   const std::vector last{scene_.component("s9")};  // by name
   scene_->components[last.front()].answers_probes = true;
   Questioner questioner(*scene_, troubles_);
-  EXPECT_EQ(questioner.about(scene_.rule("Nav")).asks.size(), kMostQuestions);
+  EXPECT_EQ(questioner.about(first_strategy(scene_, "Nav")).asks.size(), kMostQuestions);
   const Questions more = questioner.to(last, scene_.rule("Arm"));
   EXPECT_TRUE(more.asks.empty());
   EXPECT_EQ(more.awaited, last.front());

@@ -276,7 +276,7 @@ void PlanningStep::await_answers() {
     const bool has_to_wait = !weighed->candidate.excluded && !weighed->only_revives &&
                              (takes_down(strategy) || diagnose::mends(strategy));
     if (!has_to_wait) continue;
-    Questions questions = questioner_.about(causes_[weighed->failure].rule);
+    Questions questions = questioner_.about(strategy);
     asks_[weighed->failure] = std::move(questions.asks);
     if (questions.lost) {
       exclude(*weighed, {Condition::kDependency, questions.lost->publisher, {}});
