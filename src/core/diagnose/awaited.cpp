@@ -24,9 +24,16 @@ Time gone_since(RuleId rule, const Knowledge& knowledge) {
   return is_clearing ? state.detection.trigger_since : kLongAgo;
 }
 
-bool cleared_lately(RuleId rule, const Knowledge& knowledge) {
+bool cleared_within(Duration time, RuleId rule, const Knowledge& knowledge) {
   const Time gone = gone_since(rule, knowledge);
-  return gone != kLongAgo && knowledge.now < later(gone, kLongestEvidence);
+  return gone != kLongAgo && knowledge.now < later(gone, time);
+}
+
+// So long what is over may be shown by one of the failures.
+Duration longest_echo(std::span<const RuleId> failures, const Knowledge& knowledge) {
+  Duration longest{};
+  for (const RuleId rule : failures) longest = std::max(longest, remembers(rule, knowledge.rules));
+  return kLongestEvidence + longest;
 }
 
 // When the last of what the cause did until then has reached the failure.
@@ -44,8 +51,12 @@ Time last_passed_on(RuleId failure, std::optional<RuleId> cause, Time over, Dura
 
 Time echo_ends(RuleId failure, std::optional<RuleId> cause, Time over, Duration passing,
                const Knowledge& knowledge) {
-  return later(last_passed_on(failure, cause, over, passing, knowledge),
-               std::min(clears_within(failure, knowledge), kLongestEvidence));
+  const Time passed = last_passed_on(failure, cause, over, passing, knowledge);
+  // A window looks back on the time before, unless what it watches has failed anew.
+  const Duration window = is_bad_anew(failure, passed, knowledge)
+                              ? Duration::zero()
+                              : remembers(failure, knowledge.rules);
+  return later(passed, std::min(clears_within(failure, knowledge), kLongestEvidence + window));
 }
 
 Time recovered(RuleId rule, Time gone, const Knowledge& knowledge) {
@@ -79,7 +90,7 @@ Awaited::Awaited(const Knowledge& knowledge, std::span<const RuleId> failures)
     return knowledge.now <
            later(knowledge.states[rule].failing_since, kLongestEvidence + kLongestPlainEvidence);
   });
-  find_past();
+  find_past(longest_echo(failures, knowledge));
   if (!is_any_new && past_.empty()) return;
   Time latest = kLongAgo;
   for (const RuleId failure : failures)
@@ -104,7 +115,7 @@ void Awaited::collect(Time latest_onset) {
     const RuleId rule(r);
     const Duration within = evidence_within(rule, latest_onset, knowledge_);
     if (within == Duration::zero()) continue;
-    const bool is_gone = cleared_lately(rule, knowledge_);
+    const bool is_gone = cleared_within(kLongestEvidence, rule, knowledge_);
     for (const ComponentId c : spreads_from(rule, knowledge_)) {
       const auto scc = knowledge_.graph.scc_of(c);
       if (!scc) continue;
@@ -115,11 +126,11 @@ void Awaited::collect(Time latest_onset) {
   }
 }
 
-void Awaited::find_past() {
-  const auto is_recent = [&](Time over) { return knowledge_.now < later(over, kLongestEvidence); };
+void Awaited::find_past(Duration within) {
+  const auto is_recent = [&](Time over) { return knowledge_.now < later(over, within); };
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
     const RuleId rule(r);
-    if (cleared_lately(rule, knowledge_))
+    if (cleared_within(within, rule, knowledge_))
       past_.push_back({rule,
                        {},
                        onset_of(rule, knowledge_).earliest,
@@ -266,7 +277,7 @@ Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {
   const bool is_of_outage =
       !past.component && past.symptom == Symptom::kOutage && is_mended(failure, knowledge_.rules);
   const bool has_echo = !is_value || is_of_outage || knowledge_.latencies.is_late(failure) ||
-                        counts_events(failure, knowledge_.rules);
+                        remembers(failure, knowledge_.rules) > Duration::zero();
   const Onset onset = onset_of(failure, knowledge_);
   const std::optional<RuleId> cause = past.component ? std::nullopt : past.rule;
   const Time passed = last_passed_on(failure, cause, past.over, passing, knowledge_);

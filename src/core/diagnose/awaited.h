@@ -21,7 +21,8 @@
 //   r_u             when u recovered: it cleared then, less its presumed lateness; a component was
 //                   back then
 //   passing         kPassing: how long a bad value usually takes along the graph; 0 at i's own
-//   C_i             how long i shows it after its cause is gone (clears_within)
+//   C_i             how long i shows it after its cause is gone (clears_within): at most kLongestEvidence, and its
+//                   window more, unless a topic that it watches was received again and has failed anew
 //
 // Until W_i a cause may still be detected; until Z_i the failure may be the echo of one that is gone.
 // After both, nothing more can come, and nothing is waited for. All maxima are found in one pass over
@@ -84,7 +85,7 @@ class Awaited {
   };
 
   void collect(Time latest_onset);
-  void find_past();
+  void find_past(Duration within);
   void place_past();
   void carry();
   void look_at(RuleId failure);

@@ -14,6 +14,9 @@ std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& kn
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
     if (is_silent(input.topic, now, knowledge))
       return Onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
+    const bool is_slow = rhythm.slowing && rhythm.slowing->over == rhythm.last;
+    if (input.kind == Kind::kRate && is_slow)
+      return Onset{rhythm.slowing->since, later(rhythm.slowing->since, rhythm.slowing->gap)};
     if (input.kind == Kind::kRate) return Onset{now - input.window, now};
     if (rhythm.last) return Onset{*rhythm.last, now};
     return std::nullopt;
@@ -182,8 +185,11 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
       if (rhythm.last && *rhythm.last <= onset)
         longest = std::max<Duration>(longest, kSilentGaps * rhythm.gap);
       const bool is_slow = input.kind == Input::Kind::kRate && rhythm.is_slow_since(onset);
-      if (is_slow)
-        longest = std::max<Duration>(longest, later(rhythm.slowing->since, input.window) - onset);
+      if (is_slow) {
+        const Duration shown = input.window + knowledge.rules[quiet].policies.hold_for +
+                               held_at_most(quiet, knowledge);
+        longest = std::max<Duration>(longest, later(rhythm.slowing->since, shown) - onset);
+      }
       if (is_slow || comes_late(rhythm, knowledge.now)) most = kLongestPlainEvidence;
     } else if (!watches_a_component(input)) {
       reads_value = knowledge.latencies.is_late(quiet);
@@ -197,10 +203,29 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
   return std::min(longest, most);
 }
 
-bool counts_events(RuleId rule, const RuleSet& rules) {
-  return std::ranges::any_of(rules[rule].inputs, [&](InputId id) {
-    const Kind kind = rules[id].kind;
-    return kind == Kind::kGoals || kind == Kind::kLogs || kind == Kind::kLoss;
+bool may_yet_show(RuleId quiet, Time onset, const Knowledge& knowledge) {
+  const Slot& trigger = knowledge.states[quiet].detection.trigger;
+  const auto& inputs = knowledge.rules[quiet].inputs;
+  const bool asks = std::ranges::any_of(
+      inputs, [&](InputId id) { return watches_a_component(knowledge.rules[id]); });
+  const Duration within = asks ? kLongestPlainEvidence : evidence_within(quiet, onset, knowledge);
+  return trigger.known && (trigger.b || knowledge.now < later(onset, within));
+}
+
+Duration remembers(RuleId rule, const RuleSet& rules) {
+  Duration longest{};
+  for (const InputId id : rules[rule].inputs) longest = std::max(longest, rules[id].window);
+  return longest;
+}
+
+bool is_bad_anew(RuleId rule, Time since, const Knowledge& knowledge) {
+  return std::ranges::any_of(knowledge.rules[rule].inputs, [&](InputId id) {
+    const Input& input = knowledge.rules[id];
+    if (!watches_a_topic(input)) return false;
+    const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
+    const bool is_slow = rhythm.slowing && rhythm.slowing->over == rhythm.last;
+    return rhythm.last && (is_slow ? rhythm.slowing->since : *rhythm.last) > since &&
+           (is_slow || is_silent(input.topic, knowledge.now, knowledge));
   });
 }
 

@@ -7,8 +7,9 @@
 //
 //   trigger reads            e_r                              l_r                    E_r
 //   age, phi, rate, silent   last sample                      silent since + gap     2 gaps
-//   rate, not silent         detection - window               detection              2 gaps; or until the topic
-//                                                                                    is slow for the window
+//   rate, slow               last sample in time              a usual gap later      until the topic is slow for
+//                                                                                    the window, FOR and HOLD
+//   rate, else               detection - window               detection              2 gaps
 //   alive                    when that changed                the same               none: asked
 //   alive, it hangs          last answer                      second one missed      none: asked
 //   lifecycle                when the state was read          the same               none: asked
@@ -84,11 +85,16 @@ bool may_fire(RuleId rule, const Knowledge& knowledge);
 // usually do, its trigger is unknown, it cannot fire, or its nodes must be asked.
 Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge);
 
-// Does the rule count events over a window? Those of a cause that is gone count until it has passed.
-bool counts_events(RuleId rule, const RuleSet& rules);
+// May the quiet rule still fire for what began at `onset`: its trigger is true, its evidence can still come, or it asks
+// whether its component is there, which can take long to know?
+bool may_yet_show(RuleId quiet, Time onset, const Knowledge& knowledge);
 
 // How long the failure may still be shown after its cause has cleared: the readings, the lateness
 // and the HOLD of its rule.
 Duration clears_within(RuleId failure, const Knowledge& knowledge);
+// The longest window that the rule looks back on: so long it remembers what was before its cause cleared.
+Duration remembers(RuleId rule, const RuleSet& rules);
+// Was a topic that the rule reads received again after `since`, and has fallen silent or slow anew?
+bool is_bad_anew(RuleId rule, Time since, const Knowledge& knowledge);
 
 }  // namespace culprit::diagnose

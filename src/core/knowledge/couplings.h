@@ -35,6 +35,10 @@ struct Coupling {
   double mean(double expected) const {
     return (kWeight * expected + cleared) / (kWeight + cleared + stayed + spared);
   }
+  // The same by outcomes alone. A failure that came with j may clear with it, although it once stayed away.
+  double clears(double expected) const {
+    return (kWeight * expected + cleared) / (kWeight + cleared + stayed);
+  }
   bool operator==(const Coupling&) const = default;
 };
 

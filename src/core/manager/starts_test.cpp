@@ -77,12 +77,13 @@ RULE Fused
     STRATEGY camera_redeploy 60 10
       ADAPTATION camera redeploy 5
 )");
-  robot.add("camera", {}, "/rgb").start_time = 5s;
+  robot.add("camera", {}, "/rgb");
   robot.add("fusion", {"camera"}, "/fused");
   robot.discover(4s);
   robot.kill("camera");
-  robot.start_by_hand("camera", 10s);
+  robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kRunning, 900, ""}, 5s);
   EXPECT_EQ(robot.count("Fused detected"), 1u) << transcript(robot);
+  robot.start_by_hand("camera", 10s);
   EXPECT_FALSE(robot.was_asked(" process")) << transcript(robot);
   EXPECT_TRUE(robot.works("fusion"));
 }

@@ -46,7 +46,7 @@ LikelyCauses::LikelyCauses(const Knowledge& knowledge, const Examination& found,
       last_question_(last_question(knowledge)),
       chances_(causes_.size()) {
   for (const RuleId rule : failures)
-    chances_[causes_.index_of(rule)] = strategy_chances(rule, knowledge_);
+    chances_[causes_.index_of(rule)] = strategy_chances(rule, found.troubles(), knowledge_);
   contradicted_ = all_contradicted();
 }
 
@@ -100,11 +100,15 @@ bool LikelyCauses::is_left_to_person(std::size_t node) const {
     case CauseNode::Kind::kImminent:
       return false;
     case CauseNode::Kind::kTrouble: {
-      const auto rules = knowledge_.states.touching(causes_[node].component);
-      return std::none_of(rules.begin(), rules.end(), [&](RuleId rule) {
-        return knowledge_.states[rule].detection.trigger.known &&
-               !knowledge_.states.awaits_person(rule);
-      });
+      const Time began = causes_[node].onset.latest;
+      return std::ranges::none_of(
+          knowledge_.states.touching(causes_[node].component), [&](RuleId rule) {
+            const RuleState& state = knowledge_.states[rule];
+            const bool sees_it = state.phase != RulePhase::kQuiet
+                                     ? state.detection.trigger.known
+                                     : may_yet_show(rule, began, knowledge_);
+            return sees_it && !knowledge_.states.awaits_person(rule);
+          });
     }
     case CauseNode::Kind::kUnsupplied:
       return true;

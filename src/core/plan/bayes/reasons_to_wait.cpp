@@ -37,7 +37,7 @@ void ReasonsToWait::look_at(WeighedCandidate& weighed, double chance) const {
     return;
   }
   if (exclude_effect(weighed) || exclude_unproven(weighed, chance) ||
-      exclude_coincidence(weighed) || exclude_transient(weighed))
+      exclude_coincidence(weighed) || exclude_transient(weighed) || exclude_beside_held(weighed))
     return;
   if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
     return exclude(weighed, *held);
@@ -57,7 +57,7 @@ bool ReasonsToWait::is_settling(RuleId rule) const {
   const auto& settling = knowledge_.states[rule].settling;
   return settling && knowledge_.now < settling->until &&
          !knowledge_.signals.is_read_since(rule, settling->since) &&
-         knowledge_.couplings.of(settling->with, rule).mean(Coupling::kUsual) > 0.5;
+         knowledge_.couplings.of(settling->with, rule).clears(Coupling::kUsual) > 0.5;
 }
 
 // Will `other` likely fire in time for a failure that waits for it?
@@ -105,9 +105,10 @@ bool ReasonsToWait::exclude_unproven(WeighedCandidate& weighed, double chance) c
   if (!awaiting) return false;
   const bool need_not_wait =
       chance >= kSure && !takes_down(knowledge_.rules[weighed.candidate.strategy]);
+  const Coupling coupling = knowledge_.couplings.of(awaiting->because, rule);
   const bool is_coupled =
-      awaiting->because == rule ||
-      knowledge_.couplings.of(awaiting->because, rule).mean(Coupling::kUsual) > 0.5;
+      awaiting->because == rule || (awaiting->is_echo ? coupling.clears(Coupling::kUsual)
+                                                      : coupling.mean(Coupling::kUsual)) > 0.5;
   if (need_not_wait || !is_coupled) return false;
   const bool was_in_trouble = awaiting->component && awaiting->because == rule;
   exclude(weighed, {awaiting->is_echo ? Condition::kSettling : Condition::kSuspect,
@@ -145,6 +146,26 @@ bool ReasonsToWait::exclude_transient(WeighedCandidate& weighed) const {
   exclude(weighed, {Condition::kSettling, likely_.likeliest_component(rule), rule});
   ends(weighed, later(knowledge_.states[rule].first_detected(), patience));
   weighed.candidate.remark = "such failures often clear by themselves";
+  return true;
+}
+
+// Is the strategy held back for a moment that mends what is evidently in trouble? No other one is begun in its place.
+bool ReasonsToWait::exclude_beside_held(WeighedCandidate& weighed) const {
+  const std::vector<StrategyChance>& all = likely_.chances(weighed.failure);
+  const auto own = std::ranges::find(all, weighed.candidate.strategy, &StrategyChance::strategy);
+  const RuleId rule = causes_[weighed.failure].rule;
+  const Time longest = later(knowledge_.states[rule].failing_since, kLongestEvidence);
+  if (!own->leaves_ill || knowledge_.now >= longest) return false;
+  const auto held = std::ranges::find_if(all, [&](const StrategyChance& each) {
+    return !each.is_out() && !each.leaves_ill && each.is_withheld &&
+           knowledge_.withheld[each.strategy.index].until <= longest;
+  });
+  if (held == all.end()) return false;
+  const auto& why = knowledge_.withheld[held->strategy.index];
+  weighed.candidate.excluded = Condition::kWithheld;
+  weighed.candidate.component = knowledge_.rules[held->strategy].components.front();
+  weighed.candidate.remark = why.reason;
+  ends(weighed, why.until);
   return true;
 }
 

@@ -36,6 +36,7 @@ class ReasonsToWait {
   bool exclude_coincidence(WeighedCandidate& weighed) const;
   bool exclude_unproven(WeighedCandidate& weighed, double chance) const;
   bool exclude_transient(WeighedCandidate& weighed) const;
+  bool exclude_beside_held(WeighedCandidate& weighed) const;
   // It waits until then at the latest, if that is known.
   void ends(WeighedCandidate& weighed, Time until) const {
     if (until > knowledge_.now && until != kNever)

@@ -1,16 +1,71 @@
 #include "plan/bayes/strategy_chances.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
+#include "diagnose/causes.h"
 #include "diagnose/known_down.h"
 #include "diagnose/still_there.h"
 
 namespace culprit::plan {
-std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowledge) {
+namespace {
+
+using diagnose::Trouble;
+using diagnose::TroubleSeen;
+
+// In a trouble that began with the failure, or shortly before it? One that was there for long is no reason for it.
+bool is_ill(const std::optional<TroubleSeen>& trouble, const Onset& failure) {
+  return trouble && trouble->onset.earliest <= failure.latest &&
+         failure.earliest <= later(trouble->onset.latest, diagnose::kUsualDelay);
+}
+
+bool mends(const Strategy& strategy, ComponentId component) {
+  return std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
+    return a.component == component &&
+           (a.type == AdaptationType::kRestart || a.type == AdaptationType::kCall || launches(a));
+  });
+}
+
+bool is_upstream(ComponentId component, ComponentId of, const Knowledge& knowledge) {
+  const auto& upstream = knowledge.graph.upstream(of);
+  return component != of && std::ranges::find(upstream, component) != upstream.end();
+}
+
+// Those of the components that the rule mends in which its failure evidently began: they are in trouble. One that is only
+// silent counts if another silent one depends on it.
+std::vector<ComponentId> evidently_ill(RuleId rule, Troubles troubles, const Knowledge& knowledge) {
+  const Onset onset = diagnose::onset_of(rule, knowledge);
+  std::vector<ComponentId> ill;
+  std::vector<ComponentId> silent;
+  for (const ComponentId c : knowledge.rules[rule].repaired) {
+    const bool is_mended = std::ranges::any_of(
+        knowledge.rules[rule].strategies,
+        [&](StrategyId strategy) { return mends(knowledge.rules[strategy], c); });
+    if (!is_mended || !is_ill(troubles[c.index], onset)) continue;
+    (troubles[c.index]->trouble == Trouble::kSilent ? silent : ill).push_back(c);
+  }
+  if (!ill.empty()) return ill;
+  std::ranges::copy_if(silent, std::back_inserter(ill), [&](ComponentId c) {
+    return std::ranges::any_of(silent,
+                               [&](ComponentId other) { return is_upstream(c, other, knowledge); });
+  });
+  return ill;
+}
+
+}  // namespace
+
+std::vector<StrategyChance> strategy_chances(RuleId rule, Troubles troubles,
+                                             const Knowledge& knowledge) {
   const auto& strategies = knowledge.rules[rule].strategies;
   const RuleState& state = knowledge.states[rule];
   const bool is_down = diagnose::is_known_down(rule, knowledge);
+  const std::vector<ComponentId> ill = evidently_ill(rule, troubles, knowledge);
+  const auto leaves_it_ill = [&](const Strategy& strategy) {
+    if (is_down) return !diagnose::revives(strategy, knowledge);
+    return !ill.empty() &&
+           std::ranges::none_of(ill, [&](ComponentId c) { return mends(strategy, c); });
+  };
   std::vector<StrategyChance> all;
   all.reserve(strategies.size());
   double sum = 0;
@@ -18,7 +73,8 @@ std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowl
     const Strategy& strategy = knowledge.rules[strategies[s]];
     StrategyChance each{
         strategies[s], state.search.tried[s], {}, knowledge.beliefs[strategies[s]].mean().value};
-    if (is_down && !diagnose::revives(strategy, knowledge)) each.chance *= kUnlikely;
+    each.leaves_ill = leaves_it_ill(strategy);
+    if (each.leaves_ill) each.chance *= kUnlikely;
     if (!each.is_tried) each.invalid = invalidity(strategy, knowledge);
     each.is_withheld = !each.is_out() && !knowledge.withheld[strategies[s].index].reason.empty();
     sum += each.chance;

@@ -18,7 +18,8 @@ using namespace std::chrono_literals;
 
 std::vector<double> chances(const Scene& scene, Knowledge& knowledge, const std::string& rule) {
   std::vector<double> all;
-  for (const StrategyChance& each : strategy_chances(scene.rule(rule), knowledge))
+  const auto troubles = diagnose::all_troubles(knowledge);
+  for (const StrategyChance& each : strategy_chances(scene.rule(rule), troubles, knowledge))
     all.push_back(each.chance);
   return all;
 }
