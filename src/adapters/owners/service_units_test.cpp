@@ -278,6 +278,23 @@ TEST_F(UnitsOnAStandInForSystemd, ThatFailWhenTheyAreToldToStopAreToldAsAnOrder)
   }
 }
 
+// systemd stops it then, and a person may stop it before: a process that outlives its time to end is a timeout, too.
+TEST_F(UnitsOnAStandInForSystemd, ThatHaveRunForRuntimeMaxSecAreNotToldAsAnOrder) {
+  for (const std::uint64_t limit : {50u, 100u, 101u}) {
+    systemd.add("lidar.service", {.active = "failed",
+                                  .result = "timeout",
+                                  .began = 100,
+                                  .entered_active = 100,
+                                  .left_active = 200,
+                                  .ended = 300,
+                                  .runtime_max = limit});
+    ask();
+    const auto seen = wait_for<ProcessSeen>([](const auto&) { return true; });
+    ASSERT_TRUE(seen) << limit;
+    EXPECT_EQ(seen->cause, limit > 100 ? Cause::kOrder : Cause::kUnknown) << limit;
+  }
+}
+
 // As systemctl restart leaves it between its two halves.
 TEST_F(UnitsOnAStandInForSystemd, ThatSystemdIsAboutToStartAreNotToldToHaveEnded) {
   running();

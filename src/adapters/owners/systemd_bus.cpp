@@ -217,8 +217,8 @@ Expected<int> SystemdBus::process(const std::string& path, const char* name) {
   return static_cast<int>(pid);
 }
 
-Expected<std::uint64_t> SystemdBus::moment(const std::string& path, const char* interface,
-                                           const char* name) {
+Expected<std::uint64_t> SystemdBus::time_of(const std::string& path, const char* interface,
+                                            const char* name) {
   if (auto connected = connect(); !connected) return Error{connected.error()};
   BusError error;
   std::uint64_t at = 0;
@@ -229,14 +229,27 @@ Expected<std::uint64_t> SystemdBus::moment(const std::string& path, const char* 
 }
 
 // A unit that is told to stop is not active any more when its main process ends. By itself, that ends first.
-Expected<bool> SystemdBus::was_told_to_stop(const std::string& path) {
-  const auto began = moment(path, kServiceUnit, "ExecMainStartTimestampMonotonic");
+Expected<bool> SystemdBus::was_told_to_stop(const std::string& path, const std::string& result) {
+  const auto began = time_of(path, kServiceUnit, "ExecMainStartTimestampMonotonic");
   if (!began) return Error{began.error()};
-  const auto left = moment(path, kUnit, "ActiveExitTimestampMonotonic");
+  const auto left = time_of(path, kUnit, "ActiveExitTimestampMonotonic");
   if (!left) return Error{left.error()};
-  const auto ended = moment(path, kServiceUnit, "ExecMainExitTimestampMonotonic");
+  const auto ended = time_of(path, kServiceUnit, "ExecMainExitTimestampMonotonic");
   if (!ended) return Error{ended.error()};
-  return *began <= *left && *left < *ended;
+  const bool was_stopped = *began <= *left && *left < *ended;
+  if (!was_stopped || result != "timeout") return was_stopped;
+  const auto is_own = has_run_out(path, *left);
+  if (!is_own) return Error{is_own.error()};
+  return !*is_own;
+}
+
+// Whether it left once it had been active for RuntimeMaxSec=: systemd stops it then, nobody told it to.
+Expected<bool> SystemdBus::has_run_out(const std::string& path, std::uint64_t left) {
+  const auto limit = time_of(path, kServiceUnit, "RuntimeMaxUSec");
+  if (!limit) return Error{limit.error()};
+  const auto entered = time_of(path, kUnit, "ActiveEnterTimestampMonotonic");
+  if (!entered) return Error{entered.error()};
+  return *entered <= left && left - *entered >= *limit;
 }
 
 Expected<bool> SystemdBus::has_job(const std::string& path) {
@@ -280,7 +293,7 @@ Expected<UnitState> SystemdBus::state_of(const std::string& unit) {
   state.result = std::move(*result);
   state.is_orderly = state.activity == UnitState::Activity::kInactive && state.result == "success";
   if (state.activity == UnitState::Activity::kFailed && may_answer_a_stop(state.result)) {
-    const auto told = was_told_to_stop(*path);
+    const auto told = was_told_to_stop(*path, state.result);
     if (!told) return Error{told.error()};
     state.is_orderly = *told;
   }

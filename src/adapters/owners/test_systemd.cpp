@@ -159,6 +159,9 @@ struct TestSystemdMethods {
       return sd_bus_message_append(reply, "u", static_cast<std::uint32_t>(unit.last_pid));
     if (what == "ExecMainStartTimestampMonotonic")
       return sd_bus_message_append(reply, "t", unit.began);
+    if (what == "RuntimeMaxUSec") return sd_bus_message_append(reply, "t", unit.runtime_max);
+    if (what == "ActiveEnterTimestampMonotonic")
+      return sd_bus_message_append(reply, "t", unit.entered_active);
     if (what == "ActiveExitTimestampMonotonic")
       return sd_bus_message_append(reply, "t", unit.left_active);
     if (what == "ExecMainExitTimestampMonotonic")
@@ -196,6 +199,7 @@ const sd_bus_vtable kUnit[] = {
     SD_BUS_VTABLE_START(0),
     SD_BUS_PROPERTY("LoadState", "s", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ActiveState", "s", Methods::property, 0, 0),
+    SD_BUS_PROPERTY("ActiveEnterTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ActiveExitTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("Job", "(uo)", Methods::property, 0, 0),
     SD_BUS_VTABLE_END};
@@ -205,6 +209,7 @@ const sd_bus_vtable kService[] = {
     SD_BUS_PROPERTY("ExecMainPID", "u", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ExecMainStartTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ExecMainExitTimestampMonotonic", "t", Methods::property, 0, 0),
+    SD_BUS_PROPERTY("RuntimeMaxUSec", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("Result", "s", Methods::property, 0, 0),
     SD_BUS_VTABLE_END};
 
