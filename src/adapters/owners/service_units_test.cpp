@@ -295,6 +295,28 @@ TEST_F(UnitsOnAStandInForSystemd, ThatHaveRunForRuntimeMaxSecAreNotToldAsAnOrder
   }
 }
 
+// systemctl stop of a unit that crashes again and again leaves it inactive, with its Result. So does a start after
+// RestartSec= that cannot happen.
+TEST_F(UnitsOnAStandInForSystemd, ThatAreToldToStopBeforeTheirNextStartAreToldAsAnOrder) {
+  for (const std::uint64_t became_inactive : {399u, 400u}) {
+    systemd.add("lidar.service", {.active = "activating"});
+    ask();
+    std::this_thread::sleep_for(Units::kIdlePeriod);  // Units has noticed that
+    systemd.add("lidar.service", {.result = "exit-code",
+                                  .began = 100,
+                                  .entered_active = 100,
+                                  .left_active = 300,
+                                  .ended = 300,
+                                  .became_inactive = became_inactive,
+                                  .restart_delay = 100});
+    const auto seen = wait_for<ProcessSeen>(
+        [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+    ASSERT_TRUE(seen) << became_inactive;
+    EXPECT_EQ(seen->cause, became_inactive < 400 ? Cause::kOrder : Cause::kUnknown)
+        << became_inactive;
+  }
+}
+
 // As systemctl restart leaves it between its two halves.
 TEST_F(UnitsOnAStandInForSystemd, ThatSystemdIsAboutToStartAreNotToldToHaveEnded) {
   running();

@@ -252,6 +252,18 @@ Expected<bool> SystemdBus::has_run_out(const std::string& path, std::uint64_t le
   return *entered <= left && left - *entered >= *limit;
 }
 
+// A unit that has failed is to be started again after RestartSec= (Restart=). Told to stop before, it is inactive, and its
+// Result stays. Later it may be inactive because that start could not happen (ConditionPathExists=).
+Expected<bool> SystemdBus::was_kept_from_a_restart(const std::string& path) {
+  const auto ended = time_of(path, kServiceUnit, "ExecMainExitTimestampMonotonic");
+  if (!ended) return Error{ended.error()};
+  const auto rests = time_of(path, kUnit, "InactiveEnterTimestampMonotonic");
+  if (!rests) return Error{rests.error()};
+  const auto delay = time_of(path, kServiceUnit, "RestartUSec");
+  if (!delay) return Error{delay.error()};
+  return *ended <= *rests && *rests - *ended < *delay;
+}
+
 Expected<bool> SystemdBus::has_job(const std::string& path) {
   if (auto connected = connect(); !connected) return Error{connected.error()};
   BusError error;
@@ -294,6 +306,10 @@ Expected<UnitState> SystemdBus::state_of(const std::string& unit) {
   state.is_orderly = state.activity == UnitState::Activity::kInactive && state.result == "success";
   if (state.activity == UnitState::Activity::kFailed && may_answer_a_stop(state.result)) {
     const auto told = was_told_to_stop(*path, state.result);
+    if (!told) return Error{told.error()};
+    state.is_orderly = *told;
+  } else if (state.activity == UnitState::Activity::kInactive && !state.is_orderly) {
+    const auto told = was_kept_from_a_restart(*path);
     if (!told) return Error{told.error()};
     state.is_orderly = *told;
   }

@@ -82,6 +82,7 @@ class SystemdBus : public ServiceOwner {
   Expected<std::uint64_t> time_of(const std::string& path, const char* interface, const char* name);
   Expected<bool> has_job(const std::string& path);
   Expected<bool> was_told_to_stop(const std::string& path, const std::string& result);
+  Expected<bool> was_kept_from_a_restart(const std::string& path);
   Expected<bool> has_run_out(const std::string& path, std::uint64_t left);
 
   std::string remedy() const;

@@ -160,6 +160,9 @@ struct TestSystemdMethods {
     if (what == "ExecMainStartTimestampMonotonic")
       return sd_bus_message_append(reply, "t", unit.began);
     if (what == "RuntimeMaxUSec") return sd_bus_message_append(reply, "t", unit.runtime_max);
+    if (what == "RestartUSec") return sd_bus_message_append(reply, "t", unit.restart_delay);
+    if (what == "InactiveEnterTimestampMonotonic")
+      return sd_bus_message_append(reply, "t", unit.became_inactive);
     if (what == "ActiveEnterTimestampMonotonic")
       return sd_bus_message_append(reply, "t", unit.entered_active);
     if (what == "ActiveExitTimestampMonotonic")
@@ -201,6 +204,7 @@ const sd_bus_vtable kUnit[] = {
     SD_BUS_PROPERTY("ActiveState", "s", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ActiveEnterTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ActiveExitTimestampMonotonic", "t", Methods::property, 0, 0),
+    SD_BUS_PROPERTY("InactiveEnterTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("Job", "(uo)", Methods::property, 0, 0),
     SD_BUS_VTABLE_END};
 const sd_bus_vtable kService[] = {
@@ -210,6 +214,7 @@ const sd_bus_vtable kService[] = {
     SD_BUS_PROPERTY("ExecMainStartTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ExecMainExitTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("RuntimeMaxUSec", "t", Methods::property, 0, 0),
+    SD_BUS_PROPERTY("RestartUSec", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("Result", "s", Methods::property, 0, 0),
     SD_BUS_VTABLE_END};
 

@@ -38,12 +38,15 @@ struct TestUnit {
   int pid = 0;
   int last_pid = 0;
   std::string result = "success";
-  // When its main process began, it was and ceased to be active, and its main process ended, in microseconds.
+  // When its main process began, it was and ceased to be active, its main process ended, and it was inactive at last, in
+  // microseconds.
   std::uint64_t began = 0;
   std::uint64_t entered_active = 0;
   std::uint64_t left_active = 0;
   std::uint64_t ended = 0;
+  std::uint64_t became_inactive = 0;
   std::uint64_t runtime_max = UINT64_MAX;  // RuntimeMaxSec=
+  std::uint64_t restart_delay = 100'000;   // RestartSec=
 };
 
 // Speaks org.freedesktop.systemd1 on that bus, as far as culprit asks. A unit runs `sleep`, really.
