@@ -202,11 +202,16 @@ void Units::look_at(ComponentId component, const UnitState& state) {
                            in_words(state, name_of(component)),
                            state.is_orderly && !is_ours ? Cause::kOrder : Cause::kUnknown});
   }
-  // The process that culprit had ended may be seen once more before it is gone.
+  note_successor(component, state);
+}
+
+// The process that culprit had ended may be seen once more before it is gone.
+void Units::note_successor(ComponentId component, const UnitState& state) {
+  const bool runs = state.activity == Activity::kActive || state.activity == Activity::kActivating;
   const auto ended_here = ended_here_.find(component);
-  const bool runs_anew = !state.is_over() && state.main_pid != 0 &&
-                         ended_here != ended_here_.end() && ended_here->second != state.main_pid;
-  if (runs_anew) ended_here_.erase(ended_here);
+  if (runs && state.main_pid != 0 && ended_here != ended_here_.end() &&
+      ended_here->second != state.main_pid)
+    ended_here_.erase(ended_here);
 }
 
 void Units::bar(ComponentId component, std::string why) {
@@ -316,6 +321,7 @@ bool Units::advance(Errand& errand) {
     return answer(errand, Outcome::kRefused,
                   in_words(*state, name) + ": " + owner.name() + " was told to end it");
   }
+  note_successor(errand.component, *state);
   if (!errand.was_asked) note_main_process(errand.component, *state);
   const bool is_start = errand.kind == Errand::Kind::kStart;
   if (!errand.was_asked) return is_start ? begin_start(errand, *state) : begin_end(errand, *state);

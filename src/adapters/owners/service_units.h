@@ -133,6 +133,7 @@ class Units {
   void run();
   void look_at_all();
   void look_at(ComponentId component, const UnitState& state);
+  void note_successor(ComponentId component, const UnitState& state);
   void bar(ComponentId component, std::string why);
   bool is_news_of_an_order(const Errand& errand, const UnitState& state) const;
   void note_reach(const std::optional<std::string>& trouble);

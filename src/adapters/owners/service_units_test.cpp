@@ -253,6 +253,18 @@ TEST_F(UnitsOnAStandInForSystemd, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
   }
 }
 
+// The successor of a process that culprit has ended, before anybody looked at the unit again.
+TEST_F(UnitsOnAStandInForSystemd, ThatAPersonEndsRightAfterCulpritReplacedThemAreToldAsAnOrder) {
+  const int pid = running();
+  std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // Units has noticed that it runs
+  ASSERT_EQ(stop(pid).outcome, Outcome::kDone);
+  systemd.say("inactive", 0);
+  const auto seen = wait_for<ProcessSeen>(
+      [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->cause, Cause::kOrder);
+}
+
 // A node in Python answers systemctl stop with exit code 1, others crash on it, or are killed after their time. By itself a
 // process ends before its unit ceases to be active; and a unit may fail before it is active at all.
 TEST_F(UnitsOnAStandInForSystemd, ThatFailWhenTheyAreToldToStopAreToldAsAnOrder) {
