@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <optional>
 #include <poll.h>
 #include <sstream>
@@ -24,6 +25,7 @@ namespace {
 
 using Activity = UnitState::Activity;
 
+constexpr const char* kNoAnswer = ": it does not answer";
 constexpr std::size_t kLongestAnswer = 4 << 20;  // bytes: a list of a thousand containers
 
 // Where the engine listens: from the same place as its own tools, or where its packages put it.
@@ -82,6 +84,18 @@ std::optional<T> member(const Json& object, const char* name) {
     if (!value.is_number_integer()) return std::nullopt;
   }
   return value.get<T>();
+}
+
+// RFC 3339, with fractions or without: in whole seconds since 1970.
+std::optional<std::int64_t> seconds_of(const std::string& text) {
+  std::tm day{};
+  const char* rest = strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S", &day);
+  if (rest == nullptr) return std::nullopt;
+  if (*rest == '.') rest += 1 + std::strspn(rest + 1, "0123456789");
+  std::tm zone{};
+  const char* end = strptime(rest, "%z", &zone);
+  if (end == nullptr || *end != '\0') return std::nullopt;
+  return timegm(&day) - zone.tm_gmtoff;
 }
 
 // Whether the event is about such a signal. A stop sends that of the image (STOPSIGNAL) before it kills.
@@ -218,7 +232,7 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
   const auto answer = ask("GET", "/containers/" + container + "/json", kPatience);
   if (!answer) return Error{answer.error()};
   UnitState state;
-  if (answer->status == 0) return Error{name() + ": it does not answer"};
+  if (answer->status == 0) return Error{name() + kNoAnswer};
   if (answer->status == 404) {
     state.load_state = "not-found";
     return state;
@@ -254,9 +268,11 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
     const bool is_out_of_memory = member<bool>(said, "OOMKilled").value_or(false);
     const bool is_wanted = std::ranges::find(kWanted, *code) != kWanted.end();
     // A process may answer a stop with an error, and is killed after its grace.
-    if (!is_wanted && !told_to_stop_.contains(container))
-      told_to_stop_[container] = was_told_to_stop(container);
-    state.is_orderly = !is_out_of_memory && (is_wanted || told_to_stop_[container]);
+    Expected<bool> was_told = is_wanted;
+    if (!is_wanted && !is_out_of_memory)
+      was_told = was_told_to_stop(container, member<std::string>(said, "FinishedAt").value_or(""));
+    if (!was_told) return Error{was_told.error()};
+    state.is_orderly = !is_out_of_memory && *was_told;
     const bool is_failed = !state.is_orderly && *code != kKilled;
     state.main_pid = 0;
     state.activity = is_out_of_memory || is_failed ? Activity::kFailed : Activity::kInactive;
@@ -271,21 +287,31 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
 }
 
 // The engine keeps its last events: one for each signal that it sent, and one for a stop, once the container has ended. A
-// start after them, as in a restart by culprit, begins anew.
-bool Engine::was_told_to_stop(const std::string& container) {
-  constexpr std::int64_t kMomentAgo = 30;  // seconds
+// start after them, as in a restart by culprit, begins anew. An `until` that is to come would have to be waited for. Where
+// the clock was set back since it ended, or the date is none, the moment before now counts.
+Expected<bool> Engine::was_told_to_stop(const std::string& container,
+                                        const std::string& finished_at) {
+  constexpr std::int64_t kMomentBefore = 30;  // seconds
+  constexpr std::int64_t kMomentAfter = 5;
   constexpr std::int64_t kNanoseconds = 1'000'000'000;
+  const auto known = told_to_stop_.find(container);
+  if (known != told_to_stop_.end() && known->second.first == finished_at)
+    return known->second.second;
   const std::int64_t now = wall_now();
-  std::string part = std::to_string(now % kNanoseconds);
+  const std::int64_t end = seconds_of(finished_at).value_or(0);
+  const bool is_known = end >= kMomentBefore && end <= now / kNanoseconds;
+  const std::int64_t since = (is_known ? end : now / kNanoseconds) - kMomentBefore;
+  const std::int64_t until = is_known ? std::min(now, (end + kMomentAfter) * kNanoseconds) : now;
+  std::string part = std::to_string(until % kNanoseconds);
   part.insert(0, 9 - part.size(), '0');
   const auto answer = ask("GET",
-                          "/events?since=" + std::to_string(now / kNanoseconds - kMomentAgo) +
-                              "&until=" + std::to_string(now / kNanoseconds) + "." + part +
+                          "/events?since=" + std::to_string(since) +
+                              "&until=" + std::to_string(until / kNanoseconds) + "." + part +
                               "&filters=%7B%22container%22:%5B%22" + container +
                               "%22%5D,%22event%22:%5B%22kill%22,%22start%22,%22stop%22%5D%7D",
                           kPatience);
-  if (!answer || answer->status != 200) return false;
-  std::istringstream events(answer->body);
+  if (!was_reached_) return Error{answer ? name() + kNoAnswer : answer.error()};
+  std::istringstream events(answer && answer->status == 200 ? answer->body : "");
   bool is_told = false;
   for (std::string line; std::getline(events, line);) {
     const Json event = parse_json(line);
@@ -293,6 +319,7 @@ bool Engine::was_told_to_stop(const std::string& container) {
     is_told = action == "stop" || (action == "kill" && asks_to_end(event)) ||
               (is_told && action != "start");
   }
+  told_to_stop_[container] = {finished_at, is_told};
   return is_told;
 }
 

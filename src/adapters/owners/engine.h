@@ -9,6 +9,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "language/rule_set.h"
@@ -52,8 +53,8 @@ class Engine : public ServiceOwner {
   Expected<Answer> ask(const std::string& method, const std::string& target, Duration patience);
   // Asks for a change. A change that is not answered in time may happen all the same.
   Expected<void> change(const std::string& container, const std::string& what, Duration patience);
-  // Whether it was told to stop a moment ago (docker stop), and not killed.
-  bool was_told_to_stop(const std::string& container);
+  // Whether it was told to stop (docker stop), and not killed, in the moment before it ended at that time (RFC 3339).
+  Expected<bool> was_told_to_stop(const std::string& container, const std::string& finished_at);
   Error no_form(const std::string& what) const;
 
   // Its program: the name that people know.
@@ -62,8 +63,9 @@ class Engine : public ServiceOwner {
   const EngineContainer::Engine which_;
   const std::string host_;
   bool was_reached_ = false;
-  std::map<std::string, int> last_pids_;      // the engine forgets them
-  std::map<std::string, bool> told_to_stop_;  // those that were killed, until they run again
+  std::map<std::string, int> last_pids_;  // the engine forgets them
+  // When a container ended last with an error, and whether it was told to stop.
+  std::map<std::string, std::pair<std::string, bool>> told_to_stop_;
 };
 
 }  // namespace culprit::owners

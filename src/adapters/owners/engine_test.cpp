@@ -146,6 +146,56 @@ TEST_F(ContainersOnAStandInForDocker, ThatAStopEndsAreToldAsAnOrderWhateverTheir
   }
 }
 
+// culprit looks at it long after, over a restart of its own or while the engine did not answer; or the clock was set.
+TEST_F(ContainersOnAStandInForDocker, ThatAStopEndedLongAgoAreToldAsAnOrder) {
+  constexpr std::int64_t kNoon = 1'714'564'800;  // 2024-05-01T12:00:00Z
+  struct Case {
+    std::string finished_at;
+    std::int64_t asked_to_end;
+    bool is_order;
+  };
+  const std::int64_t now = wall_now() / 1'000'000'000;
+  for (const Case& each :
+       {Case{"2024-05-01T12:00:00.123456789Z", kNoon - 29, true},
+        Case{"2024-05-01T14:00:00+02:00", kNoon + 1, true},
+        Case{"2024-05-01T12:00:00Z", kNoon - 31, false}, Case{"2024-05-01T12:00:00Z", now, false},
+        Case{"9999-05-01T12:00:00Z", now - 1, true}, Case{"0001-01-01T00:00:00Z", now - 1, true},
+        Case{"yesterday", now - 1, true}, Case{"yesterday", now - 60, false}}) {
+    engine.add("slam", {.status = "exited",
+                        .code = 1,
+                        .events = event_of("kill", "15", each.asked_to_end),
+                        .finished_at = each.finished_at});
+    const auto state = Engine(EngineContainer::Engine::kDocker).state_of("slam");
+    ASSERT_TRUE(state) << state.error();
+    EXPECT_EQ(state->is_orderly, each.is_order) << each.finished_at << ' ' << each.asked_to_end;
+  }
+}
+
+// Its policy may have started it between two looks.
+TEST_F(ContainersOnAStandInForDocker, ThatCrashedAndWereStoppedAfterThatAreToldAsAnOrder) {
+  Engine docker(EngineContainer::Engine::kDocker);
+  for (const bool is_stopped : {false, true}) {
+    engine.add("slam",
+               {.status = "exited",
+                .code = 1,
+                .events = is_stopped ? event_of("stop") : "",
+                .finished_at = is_stopped ? "2024-05-01T12:00:09Z" : "2024-05-01T12:00:00Z"});
+    const auto state = docker.state_of("slam");
+    ASSERT_TRUE(state) << state.error();
+    EXPECT_EQ(state->is_orderly, is_stopped);
+  }
+}
+
+TEST_F(ContainersOnAStandInForDocker, AreNotJudgedWhileTheEngineDoesNotSayWhatHappened) {
+  Engine docker(EngineContainer::Engine::kDocker);
+  engine.add("slam", {.status = "exited", .code = 1, .events = event_of("stop")});
+  engine.withhold_events(true);
+  EXPECT_FALSE(docker.state_of("slam"));
+  engine.withhold_events(false);
+  const auto state = docker.state_of("slam");
+  EXPECT_TRUE(state && state->is_orderly);
+}
+
 // The kernel reports the end to the manager before anybody has looked at the container.
 TEST_F(ContainersOnAStandInForDocker, ThatAStopEndedAreNotStartedByAnErrandThatCameSooner) {
   const int pid = engine.start("slam");

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <poll.h>
+#include <sstream>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <sys/wait.h>
@@ -20,18 +21,36 @@ std::string http(int status, const std::string& body) {
          " X\r\nContent-Type: application/json\r\nApi-Version: 1.41\r\n\r\n" + body;
 }
 
+double number_after(const std::string& target, const std::string& name) {
+  return std::strtod(target.substr(target.find(name) + name.size()).c_str(), nullptr);
+}
+
+std::string events_between(const std::string& events, const std::string& target) {
+  std::istringstream lines(events);
+  std::string some;
+  for (std::string line; std::getline(lines, line);) {
+    const Json event = parse_json(line);
+    const double at = event.is_object() ? event["time"].get<double>() : 0;
+    const bool is_asked_for =
+        number_after(target, "since=") <= at && at <= number_after(target, "until=");
+    if (at == 0 || is_asked_for) some += line + "\n";
+  }
+  return some;
+}
+
 std::string no_such(const std::string& name) {
   return http(404, R"({"message":"No such container: )" + name + "\"}\n");
 }
 
 }  // namespace
 
-std::string event_of(const std::string& action, const std::string& signal) {
+std::string event_of(const std::string& action, const std::string& signal, std::int64_t at) {
   Json attributes = {{"name", "slam"}};
   if (!signal.empty()) attributes["signal"] = signal;
   return to_line({{"status", action},
                   {"Type", "container"},
                   {"Action", action},
+                  {"time", at},
                   {"Actor", {{"ID", std::string(64, 'c')}, {"Attributes", attributes}}}}) +
          "\n";
 }
@@ -92,6 +111,11 @@ void TestEngine::hang(bool hangs) {
   hangs_ = hangs;
 }
 
+void TestEngine::withhold_events(bool withholds) {
+  const MutexLock lock(mutex_);
+  withholds_events_ = withholds;
+}
+
 void TestEngine::run(TestContainer& container) {
   if (container.is_broken) {
     container.status = "exited";
@@ -136,7 +160,7 @@ void TestEngine::serve() {
     for (auto& [name, container] : containers_) notice(container);
     if (!has_come || hangs_) continue;
     // Not for what it starts to hold open: the answer ends with the connection.
-    const FileDescriptor peer(accept4(listens_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    FileDescriptor peer(accept4(listens_.get(), nullptr, nullptr, SOCK_CLOEXEC));
     std::string request;
     char part[4096];
     while (request.find("\r\n\r\n") == std::string::npos) {
@@ -149,6 +173,10 @@ void TestEngine::serve() {
     if (second == std::string::npos) continue;
     const std::string answer =
         answer_to(request.substr(0, first), request.substr(first + 1, second - first - 1));
+    if (answer.empty()) {
+      unanswered_.push_back(std::move(peer));
+      continue;
+    }
     (void)!::send(peer.get(), answer.data(), answer.size(), MSG_NOSIGNAL);
   }
 }
@@ -168,6 +196,7 @@ std::string TestEngine::look_at(const std::string& name) {
         {"Dead", false},
         {"Pid", container.pid},
         {"ExitCode", container.code},
+        {"FinishedAt", container.finished_at},
         {"Error", ""}}},
       {"HostConfig", {{"RestartPolicy", {{"Name", container.policy}, {"MaximumRetryCount", 0}}}}}};
   return http(200, to_line(document));
@@ -175,12 +204,13 @@ std::string TestEngine::look_at(const std::string& name) {
 
 std::string TestEngine::answer_to(const std::string& method, const std::string& target) {
   if (!answer_.empty()) return answer_;
+  if (withholds_events_ && target.starts_with("/events?")) return "";
   if (target.starts_with("/events?") &&
       target.find("%22event%22:%5B%22kill%22,%22start%22,%22stop%22%5D") != target.npos) {
     for (const auto& [name, container] : containers_) {
       const bool is_asked_for =
           target.find("%22container%22:%5B%22" + name + "%22%5D") != target.npos;
-      if (is_asked_for) return http(200, container.events);
+      if (is_asked_for) return http(200, events_between(container.events, target));
     }
     return http(200, "");
   }

@@ -21,12 +21,14 @@ struct TestContainer {
   std::string status = "created";
   int pid = 0;
   int code = 0;
-  std::string events{};  // of the last moments, one a line
+  std::string events{};       // one a line
+  std::string finished_at{};  // when it ended last
   std::vector<std::string> command{"sleep", "300"};
 };
 
-// As dockerd writes it; `signal` is of "kill".
-std::string event_of(const std::string& action, const std::string& signal = "");
+// As dockerd writes it; `signal` is of "kill". `at`: in seconds since 1970; 0: whenever events are asked for.
+std::string event_of(const std::string& action, const std::string& signal = "",
+                     std::int64_t at = 0);
 
 class TestEngine {
  public:
@@ -47,6 +49,8 @@ class TestEngine {
   // The answer that it gives in place of the truth; empty: the truth.
   void say(const std::string& answer);
   void hang(bool hangs);
+  // It answers how a container is, and not what happened to it.
+  void withhold_events(bool withholds);
 
  private:
   void serve();
@@ -59,12 +63,14 @@ class TestEngine {
 
   test::TestFolder own_;
   FileDescriptor listens_;
+  std::vector<FileDescriptor> unanswered_{};
   Mutex mutex_;
   std::map<std::string, TestContainer> containers_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::string> asked_ CULPRIT_GUARDED_BY(mutex_);
   std::atomic<int> looks_ = 0;
   std::string answer_ CULPRIT_GUARDED_BY(mutex_);
   bool hangs_ CULPRIT_GUARDED_BY(mutex_) = false;
+  bool withholds_events_ CULPRIT_GUARDED_BY(mutex_) = false;
   bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };
