@@ -273,7 +273,7 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
       was_told = was_told_to_stop(container, member<std::string>(said, "FinishedAt").value_or(""));
     if (!was_told) return Error{was_told.error()};
     state.is_orderly = !is_out_of_memory && *was_told;
-    const bool is_failed = !state.is_orderly && *code != kKilled;
+    const bool is_failed = !is_wanted && *code != kKilled;
     state.main_pid = 0;
     state.activity = is_out_of_memory || is_failed ? Activity::kFailed : Activity::kInactive;
     state.result = is_out_of_memory ? "out of memory" : "exit code " + std::to_string(*code);

@@ -171,6 +171,18 @@ TEST_F(ContainersOnAStandInForDocker, ThatAStopEndedLongAgoAreToldAsAnOrder) {
   }
 }
 
+TEST_F(ContainersOnAStandInForDocker, ThatAStopHadEndedBeforeAnybodyLookedAreToldAsAnOrder) {
+  engine.add("slam", {.status = "exited",
+                      .code = 1,
+                      .events = event_of("stop"),
+                      .finished_at = "2024-05-01T12:00:00Z"});
+  ask("slam");
+  const auto seen = wait_for<ProcessSeen>(
+      [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->cause, Cause::kOrder);
+}
+
 // Its policy may have started it between two looks.
 TEST_F(ContainersOnAStandInForDocker, ThatCrashedAndWereStoppedAfterThatAreToldAsAnOrder) {
   Engine docker(EngineContainer::Engine::kDocker);
