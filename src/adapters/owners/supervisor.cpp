@@ -350,7 +350,8 @@ void Supervisor::look(Time now) {
   for (Member& member : members_) {
     if (member.launch) continue;
     const ProcessState state = member.process.state();
-    if (member.dump_until && *member.dump_until <= now) await_dump_no_more(member);
+    // Its wrapper may run on.
+    if (member.is_dump_awaited && !awaited_dump(member, now)) await_dump_no_more(member);
     if (state == ProcessState::kGone) end_member(member);
     if (!is_settled(member, state, now)) continue;
     if (state != member.state && state != ProcessState::kGone) {

@@ -54,6 +54,7 @@ std::optional<std::string> Supervisor::awaited_dump(Member& member, Time now) {
     }
     return now < *member.dump_until ? std::move(dump) : std::nullopt;
   }
+  member.dump_until.reset();  // it is complete: another one is waited for anew
   return std::nullopt;
 }
 

@@ -127,6 +127,43 @@ TEST(Supervisor, WaitsForTheCoreDumpOfAProcessThatCrashed) {
   EXPECT_GE(dumped, std::uintmax_t{384} << 20) << "it is cut";
 }
 
+TEST(Supervisor, WaitsForTheCoreDumpOfAChildUntilItIsCompleteThoughItsWrapperRunsOn) {
+  std::string pattern;
+  std::ifstream("/proc/sys/kernel/core_pattern") >> pattern;
+  if (pattern != "core") GTEST_SKIP() << "this machine writes core dumps elsewhere";
+  const test::TestFolder folder;
+  const std::string script = (folder / "node.py").native();
+  std::ofstream(script) << "import os, resource, time\n"
+                           "os.chdir('"
+                        << folder.path().native()
+                        << "')\n"
+                           "resource.setrlimit(resource.RLIMIT_CORE, (-1, -1))\n"
+                           "memory = bytearray(b'1') * (384 << 20)\n"
+                           "open('pid', 'w').write(str(os.getpid()))\n"
+                           "os.rename('pid', 'ready')\n"
+                           "time.sleep(1000)\n";
+  Supervised c("sh -c 'python3 " + script + "; sleep 1000'");
+  const int wrapper = c.start();
+  for (const Time end = later(live_now(), 20s); !std::filesystem::exists(folder / "ready");) {
+    if (live_now() > end) GTEST_SKIP() << "this machine limits core dumps";
+    std::this_thread::sleep_for(10ms);
+  }
+  int pid = 0;
+  std::ifstream(folder / "ready") >> pid;
+  kill(pid, SIGSEGV);
+  while (!core_dump_of(pid)) {
+    if (!is_alive(pid)) GTEST_SKIP() << "this machine writes no core dump, or in no time";
+  }
+  c.supervisor->stop({7}, ComponentId(0), 0, Ending::kToStartAgain, Hangs::kYes);
+  c.missing();
+  EXPECT_EQ(c.reply_to({7}).outcome, Outcome::kRefused);
+  const Time since = live_now();
+  c.nothing_missing();
+  EXPECT_LT(live_now() - since, Supervisor::kDump / 2);
+  EXPECT_TRUE(is_alive(wrapper));
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+}
+
 // A person looks at it; but what is to stop for good does.
 TEST(Supervisor, DoesNotReplaceWhatADebuggerHolds) {
   Supervised c("sleep 1000");
