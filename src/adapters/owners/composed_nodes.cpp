@@ -119,7 +119,7 @@ void ComposedNodes::observe(const Observation& observation) {
       for (const ComponentId part : each->parts) {
         if (rules_[part].node != gone->node) continue;
         lives_[part].left = observation.at;
-        each->has_news |= !lives_[part].is_taken;
+        each->has_news |= observation.at >= lives_[part].taken_until;
       }
     }
   } else {
@@ -247,7 +247,7 @@ std::vector<ComponentId> ComposedNodes::take_unloaded(const Container& container
     const std::string& node = rules_[part].node;
     const auto life = lives_.find(part);
     const bool has_left = life != lives_.end() && life->second.pid == pid && life->second.left &&
-                          !life->second.is_taken && !nodes_.contains(node);
+                          *life->second.left >= life->second.taken_until && !nodes_.contains(node);
     if (!has_left || container.listed->contains(node)) continue;
     lives_.erase(life);
     unloaded.push_back(part);
@@ -346,6 +346,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
   const Duration patience = errand.hangs == Hangs::kYes ? kHungAnswer : kAnswer;
   const auto stuck = [&](const ContainerAnswer& answer) {
     is_stuck = true;
+    note_failed_unload(errand.component, answer.outcome);
     return Answer{answer.outcome, container.node + " did not unload " + part.name +
                                       (answer.text.empty() ? "" : ": " + answer.text)};
   };
@@ -364,7 +365,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
                                    ", so it did not load it and cannot unload it"};
   if (!ids.empty()) {
     const MutexLock lock(mutex_);
-    lives_[errand.component] = {.pid = pid, .is_taken = true};
+    lives_[errand.component] = {.pid = pid, .taken_until = kNever};
   }
   for (const std::uint64_t id : ids) {
     const ContainerAnswer answer = services_.unload(container.node, pid, id, kUnload);
@@ -385,6 +386,15 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
     lives_.erase(errand.component);
   }
   return {};
+}
+
+// From now on, or soon, it is somebody else who unloads it.
+void ComposedNodes::note_failed_unload(ComponentId part, Outcome outcome) {
+  const MutexLock lock(mutex_);
+  const auto life = lives_.find(part);
+  if (life == lives_.end() || life->second.left || life->second.taken_until != kNever) return;
+  const bool may_happen = outcome == Outcome::kTimedOut;
+  life->second.taken_until = may_happen ? later(live_now(), kLateUnload) : kLongAgo;
 }
 
 // Empty: all that it has can come back.

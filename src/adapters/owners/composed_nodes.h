@@ -55,6 +55,8 @@ class ComposedNodes {
   static constexpr Duration kAnswer = std::chrono::seconds(2);
   static constexpr Duration kHungAnswer = std::chrono::milliseconds(500);
   static constexpr Duration kUnload = std::chrono::seconds(3);
+  // A container that did not answer an unload may still do it for so long.
+  static constexpr Duration kLateUnload = std::chrono::seconds(30);
   // Until a container that was started must be in the graph.
   static constexpr Duration kComingUp = std::chrono::seconds(30);
   // How long a node may take to load in a container that was started here.
@@ -115,8 +117,8 @@ class ComposedNodes {
   // Where a part lives, or lived last.
   struct Life {
     int pid = 0;
-    std::optional<Time> left{};  // the graph, since
-    bool is_taken = false;       // culprit has it unloaded there
+    std::optional<Time> left{};   // the graph, since
+    Time taken_until = kLongAgo;  // if it leaves before that, culprit has it unloaded
   };
   struct Answer {
     Outcome outcome = Outcome::kDone;
@@ -137,6 +139,7 @@ class ComposedNodes {
   Answer stop_container(Container& container, const Errand& errand);
   void start_part(Container& container, const Errand& errand);
   Answer unload(Container& container, const Errand& errand, int pid, bool& is_stuck);
+  void note_failed_unload(ComponentId part, Outcome outcome);
   Answer replace(Container& container, int pid, Hangs hangs);
   std::string why_not_replace(const Container& container, int pid) const;
   Answer ensure(Container& container, Duration patience);

@@ -358,6 +358,26 @@ TEST(ComposedNodes, NoneIsReportedAsUnloadedThatTheContainerListsOrCulpritUnload
   EXPECT_FALSE(robot.reports_unloaded(kDetector, 2s));
 }
 
+TEST(ComposedNodes, WhatSomebodyElseUnloadsThatCulpritDidNotIsReported) {
+  OneContainer robot;
+  robot.begin({"/detector", "/tracker"});
+  robot.unloads({Outcome::kRefused, "cannot"});
+  EXPECT_EQ(robot.stop(kTracker, Ending::kForGood).outcome, Outcome::kRefused);
+  robot.unloads({});
+  robot.unload("/box", robot.pid, 2, 1s);
+  EXPECT_TRUE(robot.reports_unloaded(kTracker));
+}
+
+TEST(ComposedNodes, WhatTheContainerUnloadsLateIsNotReported) {
+  OneContainer robot;
+  robot.begin({"/detector", "/tracker"});
+  robot.unloads({Outcome::kTimedOut, ""});
+  EXPECT_EQ(robot.stop(kTracker, Ending::kForGood).outcome, Outcome::kTimedOut);
+  robot.unloads({});
+  robot.unload("/box", robot.pid, 2, 1s);
+  EXPECT_FALSE(robot.reports_unloaded(kTracker, 2s));
+}
+
 TEST(ComposedNodes, WhatAnEarlierRunSawInAProcessThatHasEndedIsLoadedToo) {
   OneContainer robot;
   robot.composed->remember(kTracker, 1 << 30);
