@@ -424,6 +424,12 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
     return false;
   const bool is_to_replace = errand.kind == Errand::Kind::kReplace;
   if (!runs && state.is_over() && !state.has_job) return answer(errand, Outcome::kDone, "");
+  // A request to restart it would take the place of a person's to end it.
+  const bool is_being_ended = state.activity == Activity::kDeactivating && state.has_job;
+  if (is_to_replace && is_being_ended && !ended_here_.contains(errand.component))
+    return live_now() >= errand.until &&
+           answer(errand, Outcome::kRefused,
+                  bus.name() + " was told to end " + name + ", and has not finished");
   const auto elsewhere = elsewhere_.find(errand.component);
   if (is_to_replace && elsewhere != elsewhere_.end() &&
       live_now() < later(elsewhere->second.since, kFresh))

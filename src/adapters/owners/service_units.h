@@ -6,7 +6,7 @@
 // between. A unit that systemd started again already (Restart=), or is about to, is not ended and
 // not started a second time. systemd ends a process politely. The process gets SIGKILL, through
 // systemd too, if it is stopped, is still there after kPolite, or hangs and is still there after
-// Supervisor::kHung.
+// Supervisor::kHung. While somebody else's request to end it is under way, culprit does not restart it.
 //
 // Proof before harm: if the process is not part of the unit, ending the unit would not end it, so
 // nothing is ended then; nor is a process replaced that a debugger holds. If systemd cannot be

@@ -265,6 +265,23 @@ TEST_F(UnitsOnAStandInForSystemd, ThatAPersonEndsRightAfterCulpritReplacedThemAr
   EXPECT_EQ(seen->cause, Cause::kOrder);
 }
 
+// Its node hangs, or has ended before the main process.
+TEST_F(UnitsOnAStandInForSystemd, ThatAPersonIsEndingAreNotRestarted) {
+  const int pid = running();
+  std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // Units has noticed that it runs
+  systemd.say("deactivating", static_cast<std::uint32_t>(pid), true);
+  const Reply reply = stop(pid, Ending::kToStartAgain, Hangs::kYes);
+  EXPECT_EQ(reply.outcome, Outcome::kRefused);
+  EXPECT_THAT(reply.text, HasSubstr("was told to end lidar.service"));
+  systemd.say("inactive", 0);
+  const auto seen = wait_for<ProcessSeen>(
+      [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->cause, Cause::kOrder);
+  EXPECT_TRUE(is_alive(pid));
+  EXPECT_THAT(systemd.asked(), IsEmpty());
+}
+
 // A node in Python answers systemctl stop with exit code 1, others crash on it, or are killed after their time. By itself a
 // process ends before its unit ceases to be active; and a unit may fail before it is active at all.
 TEST_F(UnitsOnAStandInForSystemd, ThatFailWhenTheyAreToldToStopAreToldAsAnOrder) {
