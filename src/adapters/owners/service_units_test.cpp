@@ -52,6 +52,16 @@ TEST_F(UnitsOnAStandInForSystemd, AreStartedAndSayWhichProcess) {
   EXPECT_THAT(systemd.asked(), ElementsAre("StartUnit lidar.service"));
 }
 
+TEST_F(UnitsOnAStandInForSystemd, RunWhileTheyReloadOrRefresh) {
+  const int pid = running();
+  for (const char* active : {"reloading", "refreshing"}) {
+    systemd.say(active, static_cast<std::uint32_t>(pid));
+    const Reply reply = start();
+    EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
+  }
+  EXPECT_THAT(systemd.asked(), IsEmpty());
+}
+
 TEST_F(UnitsOnAStandInForSystemd, AreReplacedByOneRequest) {
   const int old = running();
   const Reply reply = stop(old);

@@ -60,7 +60,8 @@ bool is_of_systemd(const BusError& error) {
 
 std::optional<UnitState::Activity> activity_of(const std::string& text) {
   using enum UnitState::Activity;
-  if (text == "active" || text == "reloading" || text == "maintenance") return kActive;
+  if (text == "active" || text == "reloading" || text == "refreshing" || text == "maintenance")
+    return kActive;
   if (text == "activating") return kActivating;
   if (text == "deactivating") return kDeactivating;
   if (text == "inactive") return kInactive;
