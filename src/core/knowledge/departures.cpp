@@ -36,7 +36,6 @@ void Departures::arrived(ComponentId component, int pid, Time at, By by) {
   if (pid != 0 && member.started_pid == pid) {
     member.is_there = true;
     member.has_left = false;
-    member.left_at = kLongAgo;
     return;
   }
   // A launch whose end was not seen may have a successor that has run for long.
@@ -73,7 +72,6 @@ void Departures::launched(ComponentId component, int launcher) {
     member.launcher = launcher;
     member.is_ours = false;
     member.has_left = false;
-    member.left_at = kLongAgo;
     if (launcher == 0) return;
     // PIDs are reused: another launcher has the number of one that ended.
     std::erase_if(launches_,
@@ -108,26 +106,14 @@ void Departures::left(ComponentId component, Time at) {
   }
   has_changed_ = true;
   if (member.has_owner) member.owner_is_asked_until = later(at, kAlone);
-  if (launch != nullptr) count_leaving(*launch, component, at);
-}
-
-// One that is back by now does not leave with this one.
-void Departures::count_leaving(Launch& launch, ComponentId component, Time at) {
-  if (later(launch.left_at, kTogether) < at) forget_leaving(launch);
-  if (launch.failed && members_[launch.failed->index].left_at == kLongAgo) launch.failed.reset();
-  members_[component.index].left_at = launch.left_at = launch.left_first = at;
-  launch.left = 0;
-  for (const Member& each : members_) {
-    if (each.launcher != launch.launcher || each.left_at == kLongAgo) continue;
-    ++launch.left;
-    launch.left_first = std::min(launch.left_first, each.left_at);
+  if (launch == nullptr) return;
+  if (launch->left == 0 || later(launch->left_at, kTogether) < at) {
+    launch->left = 0;
+    launch->left_first = at;
+    launch->failed.reset();
   }
-}
-
-void Departures::forget_leaving(const Launch& launch) {
-  for (Member& each : members_) {
-    if (each.launcher == launch.launcher) each.left_at = kLongAgo;
-  }
+  ++launch->left;
+  launch->left_at = at;
 }
 
 // It may have left already: it said good-bye. Two that fail one after the other do not leave together.
@@ -137,8 +123,8 @@ void Departures::failed(ComponentId component, Time at) {
   if (launch == nullptr) return;
   const bool is_second = launch->left == 2 && launch->failed;
   if (is_second && later(launch->failed_at, kFailedAlone) < launch->left_at) {
-    forget_leaving(*launch);
-    count_leaving(*launch, component, launch->left_at);
+    launch->left = 1;
+    launch->left_first = launch->left_at;
   }
   launch->failed = component;
   launch->failed_at = launch->left_at;
@@ -202,7 +188,6 @@ void Departures::loaded(ComponentId component, Time at) {
   if (member.down != StaysDown::Why::kUnloaded) return;
   member.down.reset();
   member.has_left = false;
-  member.left_at = kLongAgo;
   member.back = at;
 }
 

@@ -7,7 +7,7 @@
 //   event                                 culprit's answer
 //   a component exits cleanly             it waits for kAlone, since the others may follow
 //   a component fails as also on Ctrl-C   likewise, for kFailedAlone
-//   several exit or fail so               those that are not back leave together; it waits until none has for kTogether
+//   several exit or fail so               they leave together; it waits until none has for kTogether
 //   the launcher ends with them           the launch has ended, and its components stay down until a person starts one
 //                                         again, or orders so (Revive)
 //   a person starts a component again,    it waits for kBack while the component comes up
@@ -167,7 +167,6 @@ class Departures {
     bool is_there = false;
     bool has_left = false;
     bool has_crashed = false;  // that was how it left
-    Time left_at = kLongAgo;   // if it counts as one of its launch that left, and is not back
     bool has_owner = false;    // UNIT, CONTAINER, IN
     int started_pid = 0;       // that culprit started last
     Time since{};              // when it did
@@ -181,8 +180,6 @@ class Departures {
 
   Launch* launch_of(ComponentId component);
   const Launch* launch_of(ComponentId component) const;
-  void count_leaving(Launch& launch, ComponentId component, Time at);
-  void forget_leaving(const Launch& launch);
   bool is_original_left(const Launch& launch) const;
   bool has_stand_in(const Launch& launch) const;
   bool is_any_orphan() const;
