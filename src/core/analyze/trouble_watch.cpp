@@ -14,8 +14,10 @@ void TroubleWatch::look(Time now, bool is_any_failing) {
   }
   const auto troubles = diagnose::all_troubles(knowledge_);
   withdraw();
-  std::erase_if(open_, [&](const Open& each) {
-    const bool is_over = !troubles[each.component.index];
+  std::erase_if(open_, [&](Open& each) {
+    const auto& trouble = troubles[each.component.index];
+    const bool is_over = !trouble;
+    if (trouble && !trouble->topic) each.topic.reset();  // its process was replaced, say
     // The state of a component on an unreachable computer is not known.
     if (is_over && !knowledge_.is_unheard(each.component)) close(each, now);
     return is_over;

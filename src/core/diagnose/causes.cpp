@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/invariant.h"
+#include "diagnose/awaited.h"
 #include "diagnose/imminent.h"
 #include "diagnose/known_down.h"
 #include "diagnose/touched.h"
@@ -66,7 +67,19 @@ Time begun_last(RuleId rule, const Knowledge& knowledge) {
 Time unclear_until(RuleId failure, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[failure];
   if (!state.onset) return knowledge.now;
-  return std::max(begun_last(failure, knowledge), state.masked_until);
+  const Time begun = begun_last(failure, knowledge);
+  if (state.masked_until == kLongAgo) return begun;
+  // A cause that comes back before its echo is over never went, for the failure.
+  const Duration passing = duration_of(kPassing, knowledge.rules);
+  return std::max(begun, echo_ends(failure, {}, state.masked_until, passing, knowledge));
+}
+
+// Was the component in trouble when the failure began, too, and worked only for a moment since?
+bool is_in_trouble_again(ComponentId component, Time since, const Onset& failure,
+                         const Knowledge& knowledge) {
+  const auto& past = knowledge.components[component].past_trouble;
+  return past && past->since <= failure.latest && failure.earliest <= past->over &&
+         since <= later(past->over, kLongestEvidence);
 }
 
 // As a cause, a flapping failure began with its first detection; as an effect, with its last.
@@ -381,7 +394,8 @@ bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledg
     case Trouble::kSilent:
       break;
   }
-  return can_precede(j, i);
+  return can_precede(j, i) || is_in_trouble_again(nodes_[j].component, nodes_[j].onset.latest,
+                                                  nodes_[i].onset, knowledge);
 }
 
 // In a loop of the graph each may have silenced the other: the one that fell silent first did.

@@ -39,7 +39,7 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>&
                                        const Knowledge& knowledge) {
   auto seen = present_trouble(component, published, knowledge);
   const auto& first = knowledge.components[component].troubled;
-  if (seen && first && first->latest < seen->onset.latest) {
+  if (seen && first) {
     seen->onset.earliest = std::min(seen->onset.earliest, first->earliest);
     seen->first_onset = first->latest;
   }

@@ -121,10 +121,12 @@ struct ComponentState {
     const bool is_managed = lifecycle != Lifecycle::kUnknown;
     const bool works = process == ProcessState::kRunning && alive != false &&
                        (!is_managed || lifecycle == Lifecycle::kActive);
+    // Asked in vain since it answered last: it hung already.
+    const bool is_overdue = answers_probes && questioned.unanswered.has_value();
     if (works)
       troubled.reset();
     else if (!troubled)
-      troubled = Onset{hangs() ? answered : at, at};
+      troubled = Onset{hangs() || is_overdue ? answered : at, at};
   }
 
   // Though it answers nothing, it may take up a request when it goes on.

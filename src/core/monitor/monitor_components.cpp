@@ -200,7 +200,7 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
     state.past_trouble = PastTrouble{state.lifecycle_since, at};
   if (seen.state != state.lifecycle) state.lifecycle_since = at;
   state.lifecycle = seen.state;
-  state.note_trouble(at);
+  if (seen.state != Lifecycle::kUnknown) state.note_trouble(at);
   state.was_active |= seen.state == Lifecycle::kActive;
   if (seen.state != Lifecycle::kTransition) {
     state.changes_until = kNever;
@@ -330,6 +330,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
   if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
   if (seen.state == ProcessState::kRunning && seen.pid != state.pid) note_begin(seen, at);
   set_process(state, seen.state, at);
+  state.note_trouble(at);
   state.pid = seen.pid;
   state.process_remark = seen.remark;
   // One of several was too many: the graph says which it is from now on, so none is missed.

@@ -38,6 +38,7 @@ bool takes_down(const Strategy& strategy) {
 Exclusions::Exclusions(const Knowledge& knowledge, const Examination& found, const Levels& levels,
                        std::span<const RuleId> failures)
     : knowledge_(knowledge),
+      troubles_(found.troubles()),
       reach_(found.reach()),
       levels_(levels),
       holding_(kLevels, Marks(reach_.size())),
@@ -116,7 +117,9 @@ std::optional<Exclusions::Obstacle> Exclusions::obstacle(std::size_t place,
   if (auto next = in_the_way(place, planned_[level])) {
     if (!need_not_wait || has(planned_[level].bits(), place)) return next;
   }
-  return takes_down(strategy) ? in_the_way(place, judged_[level]) : std::nullopt;
+  // Without a supplier that is in trouble, the others can show nothing.
+  const bool is_in_trouble = troubles_[reach_[place].index].has_value();
+  return takes_down(strategy) && !is_in_trouble ? in_the_way(place, judged_[level]) : std::nullopt;
 }
 
 // Does what is at `place`, or depends on it, belong to one of the failures?

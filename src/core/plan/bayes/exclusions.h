@@ -69,6 +69,7 @@ class Exclusions {
                                 const Marks& marks) const;
 
   const Knowledge& knowledge_;
+  std::span<const std::optional<diagnose::TroubleSeen>> troubles_;
   const diagnose::Reach& reach_;
   const Levels& levels_;
   // By level: reserved by attempts, and holding back what depends on it. Not by one that is less
