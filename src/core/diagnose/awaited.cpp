@@ -214,10 +214,12 @@ Awaiting Awaited::of_declared_supplier(RuleId failure, ComponentId consumer) con
 
 Awaiting Awaited::of_learned_supplier(RuleId failure) const {
   Awaiting found;
+  const std::vector<ComponentId> own = touched_by(failure, knowledge_);
   for (const auto& [cause, coupling] : knowledge_.couplings.of(failure)) {
     const bool is_learned = coupling.cleared > 0 && coupling.mean(Coupling::kRare) > kCoupled;
     if (!is_learned || symptom_of(cause, knowledge_) != Symptom::kValue ||
-        evidence_within(cause, knowledge_.now, knowledge_) == Duration::zero())
+        evidence_within(cause, knowledge_.now, knowledge_) == Duration::zero() ||
+        touched_by(cause, knowledge_) == own)  // what it shows is no supplier
       continue;
     const Time until = shows_value(cause, failure);
     if (until > found.until) found = {until, cause, false};

@@ -100,15 +100,17 @@ bool LikelyCauses::is_left_to_person(std::size_t node) const {
     case CauseNode::Kind::kImminent:
       return false;
     case CauseNode::Kind::kTrouble: {
+      const ComponentId component = causes_[node].component;
       const Time began = causes_[node].onset.latest;
-      return std::ranges::none_of(
-          knowledge_.states.touching(causes_[node].component), [&](RuleId rule) {
-            const RuleState& state = knowledge_.states[rule];
-            const bool sees_it = state.phase != RulePhase::kQuiet
-                                     ? state.detection.trigger.known
-                                     : may_yet_show(rule, began, knowledge_);
-            return sees_it && !knowledge_.states.awaits_person(rule);
-          });
+      return std::ranges::none_of(knowledge_.states.touching(component), [&](RuleId rule) {
+        // One that only pauses it for the sake of others does not repair it.
+        if (!std::ranges::binary_search(knowledge_.rules[rule].repaired, component)) return false;
+        const RuleState& state = knowledge_.states[rule];
+        const bool sees_it = state.phase != RulePhase::kQuiet
+                                 ? state.detection.trigger.known
+                                 : may_yet_show(rule, began, knowledge_);
+        return sees_it && !knowledge_.states.awaits_person(rule);
+      });
     }
     case CauseNode::Kind::kUnsupplied:
       return true;
