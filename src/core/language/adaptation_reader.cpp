@@ -207,14 +207,15 @@ class AdaptationReader {
                        Edit{{type.span.begin, ahead.position()}, ""});
   }
 
-  // "increase_parameter gain 10% 2": reported.
+  // "increase_parameter gain 10% 2": reported. "10% 3 2" has a remainder, and its impact.
   bool has_percent(const Scanner& s) {
     Scanner ahead = s.ahead();
     const Token number = ahead.next();
     const Token sign = ahead.next();
+    const Token impact = ahead.next();
     const bool is_so = number.kind == Token::Kind::kNumber && sign.is("%") &&
-                       sign.span.begin == number.span.end &&
-                       ahead.peek().span.begin > sign.span.end;
+                       sign.span.begin == number.span.end && impact.span.begin > sign.span.end &&
+                       ahead.at_end();
     return is_so && !read_.fail(Code::kSyntax, sign.span, "unexpected '%' after a number",
                                 "write the amount itself, in the unit of the parameter");
   }

@@ -176,6 +176,14 @@ RULE R
   EXPECT_EQ(rules.heaviest, Cycles{12});
 }
 
+// A percentage has no impact behind its value, and is reported.
+TEST(Checker, TakesANumberWithASignForARemainderIfAnImpactFollows) {
+  const RuleSet rules = rules_of(
+      "RULE R\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY s 50 10\n"
+      "ADAPTATION c set_parameter gain 10% 3 2\n");
+  EXPECT_EQ(rules.strategies[0].impact, Cycles{2});
+}
+
 TEST(Checker, AcceptsTheAliasesOfCriticality) {
   for (const auto& [word, level] : {std::pair{"OK", Criticality::kNonCritical},
                                     {"DEGRADED", Criticality::kWarning},
