@@ -14,9 +14,13 @@ namespace {
 using diagnose::Trouble;
 using diagnose::TroubleSeen;
 
-// In a trouble that began with the failure, or shortly before it? One that was there for long is no reason for it.
+// In a trouble that began with the failure, or shortly before it? One that was there for long is no reason for it. A
+// lifecycle is none: a process that begins anew is brought to the state where it was.
 bool is_ill(const std::optional<TroubleSeen>& trouble, const Onset& failure) {
-  return trouble && trouble->onset.earliest <= failure.latest &&
+  if (!trouble || trouble->trouble == Trouble::kNeverSeen) return false;
+  const bool is_of_process =
+      diagnose::answers_nothing(trouble->trouble) || trouble->trouble == Trouble::kSilent;
+  return is_of_process && trouble->onset.earliest <= failure.latest &&
          failure.earliest <= later(trouble->onset.latest, diagnose::kUsualDelay);
 }
 
