@@ -44,11 +44,11 @@ enum class Vendor : std::uint8_t { kFastDds, kCyclone, kOther };
 struct ParticipantInfo {
   Guid guid;
   Vendor vendor = Vendor::kOther;
-  std::string host;                     // its machine; empty if not announced
-  int pid = 0;                          // its process, by its own PID namespace; 0 if not announced
-  std::vector<UdpAddress> metatraffic;  // where it listens for discovery
-  bool shares_memory = false;           // it listens in shared memory, too (Fast DDS)
-  bool is_secured = false;              // it has an identity, signed by somebody
+  std::string host{};  // its machine; empty if not announced
+  int pid = 0;         // its process, by its own PID namespace; 0 if not announced
+  std::vector<UdpAddress> metatraffic{};  // where it listens for discovery
+  bool shares_memory = false;             // it listens in shared memory, too (Fast DDS)
+  bool is_secured = false;                // it has an identity, signed by somebody
   // The full names of its nodes, if they are known with its announcement (helper_graph.h); over DDS they are not.
   std::vector<std::string> nodes{};
   // Not its word: where its datagrams came from. Filled in when its process is looked for.
