@@ -1,11 +1,14 @@
 // Have so many components failed at once that acting would do more harm than good?
 //
-// A storm: many components have failed that nothing upstream explains. (NodeHealthCheck's
-// minHealthy, with the dependency graph taken into account: a dead camera with all its consumers is
-// no storm, also before its own alarm; nor are exited processes, whose cause is clear; nor failures that wait for a rule
-// that can still fire, or that began with a trouble that is over.) Failures that
-// began within `together` count together, although some may have been repaired already. A graph in doubt:
-// nodes vanished from the graph although their processes run, or those of other computers do not answer
+// A storm: many components have failed that nothing upstream explains (NodeHealthCheck's minHealthy, with the dependency
+// graph taken into account). These do not count:
+//   - the consumers of a dead camera, also before its own alarm;
+//   - exited processes, whose cause is clear;
+//   - failures that wait for a rule that can still fire;
+//   - failures that began with a trouble that is over.
+// Failures that began within `together` count together, although some may have been repaired already.
+//
+// A graph in doubt: nodes vanished from the graph although their processes run, or those of other computers do not answer
 // although these are reachable. Then the network is more likely at fault than all of the nodes.
 #pragma once
 
