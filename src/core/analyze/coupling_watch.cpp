@@ -295,7 +295,7 @@ bool CouplingWatch::has_supply_back(RuleId rule) const {
   const auto& upstream = knowledge_.graph.upstream(knowledge_.rules[rule].components);
   return std::ranges::any_of(upstream, [&](ComponentId component) {
     const auto& trouble = knowledge_.components[component].past_trouble;
-    return trouble && trouble->since <= began.latest && trouble->over >= began.earliest;
+    return trouble && trouble->may_have_led_to(began);
   });
 }
 

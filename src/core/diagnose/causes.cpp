@@ -78,8 +78,7 @@ Time unclear_until(RuleId failure, const Knowledge& knowledge) {
 bool is_in_trouble_again(ComponentId component, Time since, const Onset& failure,
                          const Knowledge& knowledge) {
   const auto& past = knowledge.components[component].past_trouble;
-  return past && past->since <= failure.latest && failure.earliest <= past->over &&
-         since <= later(past->over, kLongestEvidence);
+  return past && past->may_have_led_to(failure) && since <= later(past->over, kLongestEvidence);
 }
 
 // As a cause, a flapping failure began with its first detection; as an effect, with its last.

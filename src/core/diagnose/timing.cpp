@@ -8,14 +8,18 @@ namespace {
 
 using Kind = Input::Kind;
 
+// Did the last message come later than usual?
+bool is_slow(const SignalStore::Rhythm& rhythm) {
+  return rhythm.slowing && rhythm.slowing->over == rhythm.last;
+}
+
 // The onset of a silence or a death that the input shows now; empty: it shows none.
 std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& knowledge) {
   if (watches_a_topic(input)) {
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
     if (is_silent(input.topic, now, knowledge))
       return Onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
-    const bool is_slow = rhythm.slowing && rhythm.slowing->over == rhythm.last;
-    if (input.kind == Kind::kRate && is_slow)
+    if (input.kind == Kind::kRate && is_slow(rhythm))
       return Onset{rhythm.slowing->since, later(rhythm.slowing->since, rhythm.slowing->gap)};
     if (input.kind == Kind::kRate) return Onset{now - input.window, now};
     if (rhythm.last) return Onset{*rhythm.last, now};
@@ -184,13 +188,13 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
       const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
       if (rhythm.last && *rhythm.last <= onset)
         longest = std::max<Duration>(longest, kSilentGaps * rhythm.gap);
-      const bool is_slow = input.kind == Input::Kind::kRate && rhythm.is_slow_since(onset);
-      if (is_slow) {
+      const bool shows_late = input.kind == Kind::kRate && rhythm.is_slow_since(onset);
+      if (shows_late) {
         const Duration shown = input.window + knowledge.rules[quiet].policies.hold_for +
                                held_at_most(quiet, knowledge);
         longest = std::max<Duration>(longest, later(rhythm.slowing->since, shown) - onset);
       }
-      if (is_slow || comes_late(rhythm, knowledge.now)) most = kLongestPlainEvidence;
+      if (shows_late || comes_late(rhythm, knowledge.now)) most = kLongestPlainEvidence;
     } else if (!watches_a_component(input)) {
       reads_value = knowledge.latencies.is_late(quiet);
     }
@@ -223,9 +227,10 @@ bool is_bad_anew(RuleId rule, Time since, const Knowledge& knowledge) {
     const Input& input = knowledge.rules[id];
     if (!watches_a_topic(input)) return false;
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
-    const bool is_slow = rhythm.slowing && rhythm.slowing->over == rhythm.last;
-    return rhythm.last && (is_slow ? rhythm.slowing->since : *rhythm.last) > since &&
-           (is_slow || is_silent(input.topic, knowledge.now, knowledge));
+    if (!rhythm.last) return false;
+    return is_slow(rhythm)
+               ? rhythm.slowing->since > since
+               : *rhythm.last > since && is_silent(input.topic, knowledge.now, knowledge);
   });
 }
 

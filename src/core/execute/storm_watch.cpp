@@ -188,7 +188,7 @@ bool StormWatch::is_or_was_ill(ComponentId component, RuleId except) const {
 bool StormWatch::was_in_trouble(ComponentId component, RuleId failure) const {
   const auto& past = knowledge_.components[component].past_trouble;
   const auto& onset = knowledge_.states[failure].onset;
-  return past && onset && past->since <= onset->latest && onset->earliest <= past->over;
+  return past && onset && past->may_have_led_to(*onset);
 }
 
 }  // namespace culprit::execute

@@ -48,6 +48,11 @@ struct Brought {
 struct PastTrouble {
   Time since{};
   Time over{};
+
+  // May what has this onset have begun with it?
+  bool may_have_led_to(const Onset& onset) const {
+    return since <= onset.latest && onset.earliest <= over;
+  }
 };
 
 struct ComponentState {
