@@ -281,6 +281,7 @@ void Analyzer::judge(RuleId id, Time now) {
         couplings_.is_echo(attempt) ||
         (!state.standing.empty() && attempt.effective <= state.search.last_resort_at);
   }
+  attempt.is_ambiguous |= verdicts_.is_without_supplier(attempt);
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
   attempt.deadline = verdicts_.deadline(attempt);
   switch (verdicts_.verdict(attempt, now)) {
@@ -471,6 +472,9 @@ void Analyzer::fail(RuleId id, Time now) {
     ++state.search.attempts;
     if (!verdicts_.went_away_before(attempt)) outcomes_.judged(attempt, false, now);
     state.tried_alone.reset();
+    // It may have helped, and what shows now have a cause that began meanwhile.
+    if (attempt.effective != kNever)
+      state.masked_until = std::max(state.masked_until, attempt.effective);
     if (!attempt.is_ambiguous && attempt.effective != kNever) {
       state.tried_alone = {attempt.strategy, attempt.effective};
       write_.latencies.stays(id, now - attempt.effective);

@@ -153,6 +153,12 @@ std::vector<ComponentId> Questioner::suppliers(const Strategy& strategy) const {
   return all;
 }
 
+// What shows now may have begun after what the failure showed first was repaired.
+Time Questioner::shows_since(RuleId failure) const {
+  const Time onset = onset_of(failure, knowledge_).latest;
+  return later(std::max(onset, knowledge_.states[failure].masked_until), kProvesHealth);
+}
+
 Questions Questioner::about(const Strategy& strategy) {
   const RuleId failure = strategy.rule;
   Questions questions;
@@ -161,7 +167,7 @@ Questions Questioner::about(const Strategy& strategy) {
     ask_publisher(*lost, failure, questions);
     if (questions.lost || questions.awaited) return questions;
   }
-  const Time begun = later(onset_of(failure, knowledge_).latest, kProvesHealth);
+  const Time begun = shows_since(failure);
   look();
   if (oldest_sign_ >= begun) return questions;
   std::vector<ComponentId> silent;
@@ -179,7 +185,7 @@ Questions Questioner::about(const Strategy& strategy) {
 Questions Questioner::to(std::span<const ComponentId> components, RuleId failure) {
   Questions questions;
   std::vector<ComponentId> silent;
-  const Time begun = later(onset_of(failure, knowledge_).latest, kProvesHealth);
+  const Time begun = shows_since(failure);
   for (const ComponentId c : components) {
     const ComponentState& state = knowledge_.components[c];
     if (!state.answers_probes || state.answered >= begun || answers_no_question(state) ||

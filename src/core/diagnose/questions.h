@@ -59,6 +59,8 @@ class Questioner {
   void ask_publisher(const Lost& lost, RuleId failure, Questions& questions);
   void look();
   bool may_hang(ComponentId component) const;
+  // A sign of life counts from then on.
+  Time shows_since(RuleId failure) const;
   std::vector<ComponentId> suppliers(const Strategy& strategy) const;
 
   const Knowledge& knowledge_;
