@@ -524,7 +524,8 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
     state.alive.reset();
     return update_alive_inputs(component, at, Slot());
   }
-  if (state.alive == is_alive) return;
+  // Its process or its lifecycle may be another one meanwhile.
+  if (state.alive == is_alive) return state.note_trouble(at);
   const bool is_ended = !is_there && is_being_ended(component);
   state.alive = is_alive;
   state.alive_since = at;

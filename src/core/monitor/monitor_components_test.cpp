@@ -210,6 +210,32 @@ TEST(Monitor, AnActivationEndsATroubleAndTheFirstReadingDoesNot) {
   EXPECT_EQ(past->over - past->since, 120s);
 }
 
+// The node was in the graph all the time.
+TEST(Monitor, TheEndOfOneOfSeveralProcessesIsNoTroubleOfTheOneThatStays) {
+  Watched watched(rule("!alive(c)"));
+  const auto& troubled = watched.knowledge.components[ComponentId(0)].troubled;
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(2s, NamesakesSeen{"/c", 1});
+  watched.observe(3s, ProcessSeen{ComponentId(0), ProcessState::kGone, 7, "exit code 1"});
+  EXPECT_TRUE(troubled);
+  watched.observe(4s, NodeAppeared{"/c", 8});
+  EXPECT_FALSE(troubled);
+  watched.observe(5s, NamesakesSeen{"/c", 0});
+  watched.observe(3600s, ProcessSeen{ComponentId(0), ProcessState::kGone, 8, "exit code 1"});
+  ASSERT_TRUE(troubled);
+  EXPECT_EQ(troubled->latest, Time(3600s));
+}
+
+TEST(Monitor, AnInactiveProcessIsNoTroubleOfTheUnmanagedOneThatReplacesIt) {
+  Watched watched(rule("!alive(c)"));
+  const auto& troubled = watched.knowledge.components[ComponentId(0)].troubled;
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  EXPECT_TRUE(troubled);
+  watched.observe(2s, NodeAppeared{"/c", 8});
+  EXPECT_FALSE(troubled);
+}
+
 constexpr const char* kHeard = "!alive(c) || age(/t) > 1h";
 
 // Its process is known, it publishes /t every 100 ms until `end`, and answers until then.
