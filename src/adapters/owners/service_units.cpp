@@ -205,12 +205,15 @@ void Units::look_at(ComponentId component, const UnitState& state) {
   note_successor(component, state);
 }
 
-// The process that culprit had ended may be seen once more before it is gone.
+// The process that culprit had ended may be seen once more before it is gone. A person may be ending its successor when
+// that is first seen. If culprit knew no main process, the one that is being ended may have begun before its request.
 void Units::note_successor(ComponentId component, const UnitState& state) {
-  const bool runs = state.activity == Activity::kActive || state.activity == Activity::kActivating;
   const auto ended_here = ended_here_.find(component);
-  if (runs && state.main_pid != 0 && ended_here != ended_here_.end() &&
-      ended_here->second != state.main_pid)
+  if (state.main_pid == 0 || ended_here == ended_here_.end() ||
+      ended_here->second == state.main_pid)
+    return;
+  const bool is_being_ended = state.activity == Activity::kDeactivating;
+  if (!state.is_over() && (!is_being_ended || ended_here->second != 0))
     ended_here_.erase(ended_here);
 }
 

@@ -275,6 +275,23 @@ TEST_F(UnitsOnAStandInForSystemd, ThatAPersonEndsRightAfterCulpritReplacedThemAr
   EXPECT_EQ(seen->cause, Cause::kOrder);
 }
 
+TEST_F(UnitsOnAStandInForSystemd, OfWhichAPersonIsEndingTheSuccessorAreToldAsAnOrder) {
+  systemd.add("lidar.service", {.heeds_signals = false});
+  const int pid = running();
+  std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // Units has noticed that it runs
+  units->stop(CommandId{++count}, kLidar, pid, Ending::kToStartAgain, Hangs::kNo);
+  while (systemd.asked().empty()) std::this_thread::sleep_for(5ms);
+  systemd.say("deactivating", static_cast<std::uint32_t>(getpid()), true);
+  kill(pid, SIGTERM);
+  EXPECT_EQ(answer().outcome, Outcome::kDone);
+  systemd.say("inactive", 0);
+  const auto seen = wait_for<ProcessSeen>(
+      [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->cause, Cause::kOrder);
+  EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service"));
+}
+
 // Its node hangs, or has ended before the main process.
 TEST_F(UnitsOnAStandInForSystemd, ThatAPersonIsEndingAreNotRestarted) {
   const int pid = running();
