@@ -373,6 +373,35 @@ TEST_F(UnitsOnAStandInForSystemd, ThatAreToldToStopBeforeTheirNextStartAreToldAs
   }
 }
 
+// RestartSteps= makes the wait longer than RestartSec= says. Once systemd has tried that start, the wait for the one after
+// it is longer still.
+TEST_F(UnitsOnAStandInForSystemd, ThatAreToldToStopInALongerWaitForTheirNextStartAreToldAsAnOrder) {
+  struct Case {
+    std::uint64_t became_inactive, conditions_checked;
+    bool is_order;
+  };
+  for (const Case& each :
+       {Case{400, 90, true}, Case{549, 90, true}, Case{550, 90, false}, Case{450, 451, false}}) {
+    systemd.add("lidar.service", {.active = "activating"});
+    ask();
+    std::this_thread::sleep_for(Units::kIdlePeriod);  // Units has noticed that
+    systemd.add("lidar.service", {.result = "exit-code",
+                                  .began = 100,
+                                  .entered_active = 100,
+                                  .left_active = 300,
+                                  .ended = 300,
+                                  .became_inactive = each.became_inactive,
+                                  .restart_delay = 100,
+                                  .next_restart_delay = 250,
+                                  .conditions_checked = each.conditions_checked});
+    const auto seen = wait_for<ProcessSeen>(
+        [](const ProcessSeen& one) { return one.state == ProcessState::kGone; });
+    ASSERT_TRUE(seen) << each.became_inactive;
+    EXPECT_EQ(seen->cause, each.is_order ? Cause::kOrder : Cause::kUnknown)
+        << each.became_inactive << ' ' << each.conditions_checked;
+  }
+}
+
 // As systemctl restart leaves it between its two halves.
 TEST_F(UnitsOnAStandInForSystemd, ThatSystemdIsAboutToStartAreNotToldToHaveEnded) {
   running();

@@ -219,12 +219,15 @@ Expected<int> SystemdBus::process(const std::string& path, const char* name) {
 }
 
 Expected<std::uint64_t> SystemdBus::time_of(const std::string& path, const char* interface,
-                                            const char* name) {
+                                            const char* name, Unknown unknown) {
   if (auto connected = connect(); !connected) return Error{connected.error()};
   BusError error;
   std::uint64_t at = 0;
   const int got = sd_bus_get_property_trivial(bus_.get(), kService, path.c_str(), interface, name,
                                               &error.it, 't', &at);
+  if (unknown == Unknown::kIsNever &&
+      sd_bus_error_has_name(&error.it, SD_BUS_ERROR_UNKNOWN_PROPERTY) > 0)
+    return std::uint64_t{0};
   if (got < 0) return failed(name, got, error);
   return at;
 }
@@ -255,6 +258,8 @@ Expected<bool> SystemdBus::has_run_out(const std::string& path, std::uint64_t le
 
 // A unit that has failed is to be started again after RestartSec= (Restart=). Told to stop before, it is inactive, and its
 // Result stays. Later it may be inactive because that start could not happen (ConditionPathExists=).
+// RestartSteps= (systemd 254) lengthens the delay with each start. A start that could not happen is counted: the next
+// delay may not be over then, but systemd has checked the conditions.
 Expected<bool> SystemdBus::was_kept_from_a_restart(const std::string& path) {
   const auto ended = time_of(path, kServiceUnit, "ExecMainExitTimestampMonotonic");
   if (!ended) return Error{ended.error()};
@@ -262,7 +267,14 @@ Expected<bool> SystemdBus::was_kept_from_a_restart(const std::string& path) {
   if (!rests) return Error{rests.error()};
   const auto delay = time_of(path, kServiceUnit, "RestartUSec");
   if (!delay) return Error{delay.error()};
-  return *ended <= *rests && *rests - *ended < *delay;
+  if (*ended > *rests) return false;
+  const std::uint64_t waited = *rests - *ended;
+  if (waited < *delay) return true;
+  const auto next = time_of(path, kServiceUnit, "RestartUSecNext", Unknown::kIsNever);
+  if (!next) return Error{next.error()};
+  const auto tried = time_of(path, kUnit, "ConditionTimestampMonotonic");
+  if (!tried) return Error{tried.error()};
+  return waited < *next && *tried <= *ended;
 }
 
 Expected<bool> SystemdBus::has_job(const std::string& path) {

@@ -78,8 +78,11 @@ class SystemdBus : public ServiceOwner {
   Expected<std::string> path_of(const std::string& unit);
   Expected<std::string> text(const std::string& path, const char* interface, const char* name);
   Expected<int> process(const std::string& path, const char* name);
-  // In microseconds: a duration, or when it happened last by the monotonic clock; 0: never.
-  Expected<std::uint64_t> time_of(const std::string& path, const char* interface, const char* name);
+  // In microseconds: a duration, or when it happened last by the monotonic clock; 0: never. An older systemd may not know
+  // the property.
+  enum class Unknown : std::uint8_t { kIsError, kIsNever };
+  Expected<std::uint64_t> time_of(const std::string& path, const char* interface, const char* name,
+                                  Unknown unknown = Unknown::kIsError);
   Expected<bool> has_job(const std::string& path);
   Expected<bool> was_told_to_stop(const std::string& path, const std::string& result);
   Expected<bool> was_kept_from_a_restart(const std::string& path);

@@ -142,7 +142,7 @@ struct TestSystemdMethods {
   }
 
   static int property(sd_bus*, const char* path, const char*, const char* name,
-                      sd_bus_message* reply, void* data, sd_bus_error*) {
+                      sd_bus_message* reply, void* data, sd_bus_error* error) {
     TestSystemd& self = of(data);
     const MutexLock lock(self.mutex_);
     const auto found = self.units_.find(name_of(path));
@@ -161,6 +161,12 @@ struct TestSystemdMethods {
       return sd_bus_message_append(reply, "t", unit.began);
     if (what == "RuntimeMaxUSec") return sd_bus_message_append(reply, "t", unit.runtime_max);
     if (what == "RestartUSec") return sd_bus_message_append(reply, "t", unit.restart_delay);
+    if (what == "RestartUSecNext" && !unit.next_restart_delay)
+      return sd_bus_error_set(error, SD_BUS_ERROR_UNKNOWN_PROPERTY, "Unknown property");
+    if (what == "RestartUSecNext")
+      return sd_bus_message_append(reply, "t", *unit.next_restart_delay);
+    if (what == "ConditionTimestampMonotonic")
+      return sd_bus_message_append(reply, "t", unit.conditions_checked);
     if (what == "InactiveEnterTimestampMonotonic")
       return sd_bus_message_append(reply, "t", unit.became_inactive);
     if (what == "ActiveEnterTimestampMonotonic")
@@ -205,6 +211,7 @@ const sd_bus_vtable kUnit[] = {
     SD_BUS_PROPERTY("ActiveEnterTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("ActiveExitTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("InactiveEnterTimestampMonotonic", "t", Methods::property, 0, 0),
+    SD_BUS_PROPERTY("ConditionTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("Job", "(uo)", Methods::property, 0, 0),
     SD_BUS_VTABLE_END};
 const sd_bus_vtable kService[] = {
@@ -215,6 +222,7 @@ const sd_bus_vtable kService[] = {
     SD_BUS_PROPERTY("ExecMainExitTimestampMonotonic", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("RuntimeMaxUSec", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("RestartUSec", "t", Methods::property, 0, 0),
+    SD_BUS_PROPERTY("RestartUSecNext", "t", Methods::property, 0, 0),
     SD_BUS_PROPERTY("Result", "s", Methods::property, 0, 0),
     SD_BUS_VTABLE_END};
 

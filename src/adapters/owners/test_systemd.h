@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -47,6 +48,9 @@ struct TestUnit {
   std::uint64_t became_inactive = 0;
   std::uint64_t runtime_max = UINT64_MAX;  // RuntimeMaxSec=
   std::uint64_t restart_delay = 100'000;   // RestartSec=
+  // With RestartSteps=; before systemd 254 there is none.
+  std::optional<std::uint64_t> next_restart_delay{};
+  std::uint64_t conditions_checked = 0;  // in microseconds
 };
 
 // Speaks org.freedesktop.systemd1 on that bus, as far as culprit asks. A unit runs `sleep`, really.
