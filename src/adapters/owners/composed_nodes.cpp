@@ -344,9 +344,10 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
   CULPRIT_ASSERT(pid != 0);  // a container that is not proven to be of this machine
   const Component& part = rules_[errand.component];
   const Duration patience = errand.hangs == Hangs::kYes ? kHungAnswer : kAnswer;
+  bool has_unloaded_one = false;  // its node may leave the graph later
   const auto stuck = [&](const ContainerAnswer& answer) {
     is_stuck = true;
-    note_failed_unload(errand.component, answer.outcome);
+    note_failed_unload(errand.component, has_unloaded_one ? Outcome::kTimedOut : answer.outcome);
     return Answer{answer.outcome, container.node + " did not unload " + part.name +
                                       (answer.text.empty() ? "" : ": " + answer.text)};
   };
@@ -371,6 +372,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
     const ContainerAnswer answer = services_.unload(container.node, pid, id, kUnload);
     if (!has_process(pid)) return {};
     if (answer.outcome != Outcome::kDone) return stuck(answer);
+    has_unloaded_one = true;
   }
   const bool has_left = wait(later(live_now(), kUnload), [&]() CULPRIT_REQUIRES(mutex_) {
     const auto found = nodes_.find(part.node);

@@ -176,6 +176,8 @@ class OneContainer : public ContainerServices {
       done.push_back("unload " + name);
       if (unloading.outcome != Outcome::kDone) return unloading;
       nodes.erase(node);
+      if (takes_all_of_a_name)
+        std::erase_if(nodes, [&](const LoadedNode& each) { return each.name == name; });
     }
     if (!keeps_nodes) vanishes(name);
     return {};
@@ -229,6 +231,7 @@ class OneContainer : public ContainerServices {
   std::string told_last;
   std::optional<std::string> contested;
   bool keeps_nodes = false;
+  bool takes_all_of_a_name = false;  // with the first that it unloads
   std::atomic<bool> is_loadable = true;
   bool is_proven = true;
   std::atomic<int> pid = 0;
@@ -375,6 +378,17 @@ TEST(ComposedNodes, WhatTheContainerUnloadsLateIsNotReported) {
   EXPECT_EQ(robot.stop(kTracker, Ending::kForGood).outcome, Outcome::kTimedOut);
   robot.unloads({});
   robot.unload("/box", robot.pid, 2, 1s);
+  EXPECT_FALSE(robot.reports_unloaded(kTracker, 2s));
+}
+
+TEST(ComposedNodes, WhatCulpritUnloadedIsNotReportedThoughOneMoreOfItsNameWasRefused) {
+  OneContainer robot;
+  robot.begin({"/detector", "/tracker", "/tracker"});
+  robot.takes_all_of_a_name = true;
+  robot.keeps_nodes = true;  // they leave the graph later
+  EXPECT_EQ(robot.stop(kTracker, Ending::kForGood).outcome, Outcome::kRefused);
+  EXPECT_THAT(robot.what_was_done(), ElementsAre("begin", "unload /tracker"));
+  robot.vanishes("/tracker");
   EXPECT_FALSE(robot.reports_unloaded(kTracker, 2s));
 }
 
