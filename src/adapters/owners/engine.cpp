@@ -256,7 +256,7 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
     if (state.main_pid == 0) return no_form(what);
     state.activity = Activity::kActive;
     last_pids_[container] = state.main_pid;
-    told_to_stop_.erase(container);
+    ends_.erase(container);
   } else if (*status == "restarting" || *status == "initialized") {
     state.activity = Activity::kActivating;
   } else if (*status == "removing" || *status == "stopping") {
@@ -288,15 +288,17 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
 
 // The engine keeps its last events: one for each signal that it sent, and one for a stop, once the container has ended. A
 // start after them, as in a restart by culprit, begins anew. An `until` that is to come would have to be waited for. Where
-// the clock was set back since it ended, or the date is none, the moment before now counts.
+// the clock was set back since it ended, or the date is none, the moment before now counts. An engine that answers all
+// but this must not hide a crash for ever: then it counts as not told, until it says otherwise.
 Expected<bool> Engine::was_told_to_stop(const std::string& container,
                                         const std::string& finished_at) {
   constexpr std::int64_t kMomentBefore = 30;  // seconds
   constexpr std::int64_t kMomentAfter = 5;
   constexpr std::int64_t kNanoseconds = 1'000'000'000;
-  const auto known = told_to_stop_.find(container);
-  if (known != told_to_stop_.end() && known->second.first == finished_at)
-    return known->second.second;
+  constexpr int kEnough = 3;
+  End& known = ends_[container];
+  if (known.finished_at != finished_at) known = {finished_at};
+  if (known.was_told) return *known.was_told;
   const std::int64_t now = wall_now();
   const std::int64_t end = seconds_of(finished_at).value_or(0);
   const bool is_known = end >= kMomentBefore && end <= now / kNanoseconds;
@@ -310,7 +312,9 @@ Expected<bool> Engine::was_told_to_stop(const std::string& container,
                               "&filters=%7B%22container%22:%5B%22" + container +
                               "%22%5D,%22event%22:%5B%22kill%22,%22start%22,%22stop%22%5D%7D",
                           kPatience);
+  if (!was_reached_ && ++known.unanswered >= kEnough) return false;
   if (!was_reached_) return Error{answer ? name() + kNoAnswer : answer.error()};
+  known.unanswered = 0;
   std::istringstream events(answer && answer->status == 200 ? answer->body : "");
   bool is_told = false;
   for (std::string line; std::getline(events, line);) {
@@ -319,7 +323,7 @@ Expected<bool> Engine::was_told_to_stop(const std::string& container,
     is_told = action == "stop" || (action == "kill" && asks_to_end(event)) ||
               (is_told && action != "start");
   }
-  told_to_stop_[container] = {finished_at, is_told};
+  known.was_told = is_told;
   return is_told;
 }
 

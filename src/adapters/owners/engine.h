@@ -8,6 +8,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,7 +66,12 @@ class Engine : public ServiceOwner {
   bool was_reached_ = false;
   std::map<std::string, int> last_pids_;  // the engine forgets them
   // When a container ended last with an error, and whether it was told to stop.
-  std::map<std::string, std::pair<std::string, bool>> told_to_stop_;
+  struct End {
+    std::string finished_at;
+    std::optional<bool> was_told{};  // nothing: not settled
+    int unanswered = 0;              // requests for its events, in a row
+  };
+  std::map<std::string, End> ends_;
 };
 
 }  // namespace culprit::owners

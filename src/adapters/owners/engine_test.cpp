@@ -208,6 +208,20 @@ TEST_F(ContainersOnAStandInForDocker, AreNotJudgedWhileTheEngineDoesNotSayWhatHa
   EXPECT_TRUE(state && state->is_orderly);
 }
 
+TEST_F(ContainersOnAStandInForDocker, CountAsCrashedIfTheEngineNeverSaysWhatHappened) {
+  Engine docker(EngineContainer::Engine::kDocker);
+  engine.add("slam", {.status = "exited", .code = 1, .events = event_of("stop")});
+  engine.withhold_events(true);
+  EXPECT_FALSE(docker.state_of("slam"));
+  EXPECT_FALSE(docker.state_of("slam"));
+  const auto crashed = docker.state_of("slam");
+  ASSERT_TRUE(crashed) << crashed.error();
+  EXPECT_FALSE(crashed->is_orderly);
+  engine.withhold_events(false);
+  const auto state = docker.state_of("slam");
+  EXPECT_TRUE(state && state->is_orderly) << "it says so late";
+}
+
 // The kernel reports the end to the manager before anybody has looked at the container.
 TEST_F(ContainersOnAStandInForDocker, ThatAStopEndedAreNotStartedByAnErrandThatCameSooner) {
   const int pid = engine.start("slam");
