@@ -323,7 +323,9 @@ Expected<bool> Engine::was_told_to_stop(const std::string& container,
     is_told = action == "stop" || (action == "kill" && asks_to_end(event)) ||
               (is_told && action != "start");
   }
-  known.was_told = is_told;
+  // The event of its stop may still come.
+  const bool is_complete = is_known && now / kNanoseconds >= end + kMomentAfter;
+  if (is_told || is_complete) known.was_told = is_told;
   return is_told;
 }
 

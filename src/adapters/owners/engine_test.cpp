@@ -3,6 +3,7 @@
 // engine was asked.
 #include "owners/engine.h"
 
+#include <ctime>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -25,6 +26,15 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr ComponentId kSlam{0};
+
+// As docker writes it; in seconds since 1970.
+std::string date_of(std::int64_t at) {
+  const std::time_t seconds = at;
+  std::tm day{};
+  char text[sizeof "2024-05-01T12:00:00Z"];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&seconds, &day));
+  return text;
+}
 
 struct ContainersOnAStandInForDocker : AsksAnOwner {
   void SetUp() override {
@@ -196,6 +206,23 @@ TEST_F(ContainersOnAStandInForDocker, ThatCrashedAndWereStoppedAfterThatAreToldA
     ASSERT_TRUE(state) << state.error();
     EXPECT_EQ(state->is_orderly, is_stopped);
   }
+}
+
+// The engine writes the event of a stop once the container has ended, and a look may come between.
+TEST_F(ContainersOnAStandInForDocker, ThatAStopHasJustEndedAreToldAsAnOrderOnceTheEngineSaysSo) {
+  Engine docker(EngineContainer::Engine::kDocker);
+  const auto is_orderly = [&](const std::string& finished_at, const std::string& events) {
+    engine.add("slam",
+               {.status = "exited", .code = 1, .events = events, .finished_at = finished_at});
+    const auto state = docker.state_of("slam");
+    return state && state->is_orderly;
+  };
+  const std::string just_now = date_of(wall_now() / 1'000'000'000);
+  EXPECT_FALSE(is_orderly(just_now, ""));
+  EXPECT_TRUE(is_orderly(just_now, event_of("stop")));
+  EXPECT_TRUE(is_orderly(just_now, "")) << "it is not asked once more";
+  EXPECT_FALSE(is_orderly("2024-05-01T12:00:00Z", ""));
+  EXPECT_FALSE(is_orderly("2024-05-01T12:00:00Z", event_of("stop"))) << "it would have come";
 }
 
 TEST_F(ContainersOnAStandInForDocker, AreNotJudgedWhileTheEngineDoesNotSayWhatHappened) {
