@@ -473,8 +473,7 @@ void Analyzer::fail(RuleId id, Time now) {
     if (!verdicts_.went_away_before(attempt)) outcomes_.judged(attempt, false, now);
     state.tried_alone.reset();
     // It may have helped, and what shows now have a cause that began meanwhile.
-    if (attempt.effective != kNever)
-      state.masked_until = std::max(state.masked_until, attempt.effective);
+    if (attempt.effective != kNever) state.masked_until = now;
     if (!attempt.is_ambiguous && attempt.effective != kNever) {
       state.tried_alone = {attempt.strategy, attempt.effective};
       write_.latencies.stays(id, now - attempt.effective);

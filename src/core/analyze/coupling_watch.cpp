@@ -31,8 +31,8 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
     const Time due = std::max(
         later(gone, std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle)), echo);
     const Time began = diagnose::onset_of(effect, knowledge_).latest;
-    questions_.push_back({strategy, effect, attempt.first_change, state.failing_since, shown, due,
-                          later(now, kPatience), fired_after(began, cause)});
+    questions_.push_back({strategy, effect, attempt.first_change, state.failing_since, gone, shown,
+                          due, later(due, kPatience), fired_after(began, cause)});
   }
 }
 
@@ -201,12 +201,14 @@ void CouplingWatch::ended(const Attempt& attempt, Time now) {
 
 void CouplingWatch::advance(Time now) {
   std::erase_if(questions_, [&](Question& q) {
-    if (now < q.due && !knowledge_.signals.is_read_since(q.effect, q.shown)) return false;
+    const Time due = diagnose::settles_by(q.effect, q.gone, q.due, knowledge_);
+    if (now < due && !knowledge_.signals.is_read_since(q.effect, q.shown)) return false;
     const RuleState& state = knowledge_.states[q.effect];
     const bool is_other = state.phase == RulePhase::kQuiet || state.failing_since != q.detected;
     if (is_other || now >= q.abandoned) return true;
     // On its way out, or out of sight: it is asked again.
     if (!state.detection.trigger.known || !state.detection.trigger.b) {
+      q.gone = now;
       q.due = later(now, knowledge_.rules.cycle);
       return false;
     }
@@ -218,7 +220,8 @@ void CouplingWatch::advance(Time now) {
 
 Time CouplingWatch::next_deadline() const {
   Time next = kNever;
-  for (const Question& q : questions_) next = std::min(next, q.due);
+  for (const Question& q : questions_)
+    next = std::min(next, diagnose::settles_by(q.effect, q.gone, q.due, knowledge_));
   return next;
 }
 

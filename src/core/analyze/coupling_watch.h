@@ -81,6 +81,7 @@ class CouplingWatch {
     RuleId effect;        // i
     Time since;           // the strategy's first request
     Time detected;        // when i was
+    Time gone;            // when i may have cleared with j
     Time shown;           // from then on a fresh reading answers it
     Time due;             // or at the latest this
     Time abandoned;

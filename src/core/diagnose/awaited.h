@@ -38,8 +38,6 @@
 
 namespace culprit::diagnose {
 
-inline constexpr Cycles kPassing{5};
-
 struct Awaiting {
   Time until = kLongAgo;
   RuleId because;        // the rule that can still fire, or cleared

@@ -66,19 +66,14 @@ Time begun_last(RuleId rule, const Knowledge& knowledge) {
 // an earlier culprit detected the failure.
 Time unclear_until(RuleId failure, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[failure];
-  if (!state.onset) return knowledge.now;
-  const Time begun = begun_last(failure, knowledge);
-  if (state.masked_until == kLongAgo) return begun;
-  // A cause that comes back before its echo is over never went, for the failure.
-  const Duration passing = duration_of(kPassing, knowledge.rules);
-  return std::max(begun, echo_ends(failure, {}, state.masked_until, passing, knowledge));
+  return state.onset ? std::max(begun_last(failure, knowledge), state.masked_until) : knowledge.now;
 }
 
-// Was the component in trouble when the failure began, too, and worked only for a moment since?
-bool is_in_trouble_again(ComponentId component, Time since, const Onset& failure,
-                         const Knowledge& knowledge) {
+// The latest onset of the first of its troubles that followed one another, this one included.
+Time troubled_since(ComponentId component, const TroubleSeen& seen, const Knowledge& knowledge) {
   const auto& past = knowledge.components[component].past_trouble;
-  return past && past->may_have_led_to(failure) && since <= later(past->over, kLongestEvidence);
+  const bool was_before = past && seen.onset.latest <= later(past->over, kLongestEvidence);
+  return was_before ? std::min(seen.first_onset, past->since) : seen.first_onset;
 }
 
 // As a cause, a flapping failure began with its first detection; as an effect, with its last.
@@ -146,10 +141,16 @@ bool is_trouble_left_to(RuleId i, const CauseNode& trouble, std::span<const Comp
   const ComponentState& state = knowledge.components[trouble.component];
   const auto is_recent = [&](Time at) { return knowledge.now < later(at, kLongestPlainEvidence); };
   if (state.is_coming_up() && is_recent(state.process_since)) return false;
+  // What is down obeys no restart.
+  if (answers_nothing(trouble.trouble) && !is_replaced_by(i, trouble.component, knowledge.rules))
+    return false;
   if (!is_recent(trouble.onset.latest)) return true;
   return std::ranges::none_of(knowledge.states.touching(trouble.component), [&](RuleId rule) {
-    return rule != i && knowledge.states[rule].detection.trigger.known &&
-           !knowledge.states.awaits_person(rule) &&
+    const RuleState& other = knowledge.states[rule];
+    const bool sees_it = other.phase != RulePhase::kQuiet
+                             ? other.detection.trigger.known
+                             : may_yet_show(rule, trouble.onset.latest, knowledge);
+    return rule != i && sees_it && !knowledge.states.awaits_person(rule) &&
            contains(mended_by(rule, knowledge.rules), trouble.component);
   });
 }
@@ -172,7 +173,9 @@ void begin_with_its_process(CauseNode& failure,
     const auto& seen = troubles[c.index];
     const bool is_proof =
         seen && (seen->trouble == Trouble::kExited || seen->trouble == Trouble::kStopped);
-    if (is_proof) failure.onset.earliest = std::min(failure.onset.earliest, seen->onset.earliest);
+    if (!is_proof) continue;
+    failure.onset.earliest = std::min(failure.onset.earliest, seen->onset.earliest);
+    failure.troubled_since = std::min(failure.troubled_since, troubled_since(c, *seen, knowledge));
   }
 }
 
@@ -252,7 +255,7 @@ void Causes::add_troubles(const Knowledge& knowledge,
   std::vector<ComponentId> components;
   for (std::size_t c = 0; c < troubles.size(); ++c) {
     const auto& trouble = troubles[c];
-    if (trouble && (!began[c] || later(*began[c], kUsualDelay) < trouble->onset.earliest))
+    if (trouble && (!began[c] || later(*began[c], kUsualDelay) < trouble->began))
       components.emplace_back(c);
   }
   const RuleSet& rules = knowledge.rules;
@@ -261,7 +264,7 @@ void Causes::add_troubles(const Knowledge& knowledge,
   for (const ComponentId c : components) {
     const TroubleSeen& seen = *troubles[c.index];
     nodes_.push_back({CauseNode::Kind::kTrouble, {}, c, seen.trouble, {}, seen.onset});
-    nodes_.back().first_onset = seen.first_onset;
+    nodes_.back().troubled_since = troubled_since(c, seen, knowledge);
   }
 }
 
@@ -314,7 +317,7 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
       const bool is_possible =
           is_trouble
               ? !is_own && can_explain(j, i, knowledge) && !may_be_effect(j, i, reach, knowledge)
-              : !is_own && can_precede(j, i) &&
+              : !is_own && can_precede(j, i, knowledge) &&
                     !is_seen_twice(nodes_[j].rule, nodes_[i].rule, touched, knowledge);
       if (!is_possible) clear(row, j);
     });
@@ -393,8 +396,7 @@ bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledg
     case Trouble::kSilent:
       break;
   }
-  return can_precede(j, i) || is_in_trouble_again(nodes_[j].component, nodes_[j].onset.latest,
-                                                  nodes_[i].onset, knowledge);
+  return can_precede(j, i, knowledge);
 }
 
 // In a loop of the graph each may have silenced the other: the one that fell silent first did.
@@ -407,16 +409,41 @@ bool Causes::may_be_effect(std::size_t silent, std::size_t i, const Reach& reach
                              [&](ComponentId c) { return has(upstream, reach.place_of(c)); });
 }
 
-bool Causes::can_precede(std::size_t j, std::size_t i) const {
-  return nodes_[j].onset.earliest <= std::max(nodes_[i].onset.latest, nodes_[i].unclear_until);
+bool Causes::can_precede(std::size_t j, std::size_t i, const Knowledge& knowledge) const {
+  return nodes_[j].onset.earliest <= std::max(nodes_[i].onset.latest, nodes_[i].unclear_until) ||
+         comes_back(j, i, knowledge);
+}
+
+// Was it there when the failure began, and came back before what it had caused can have cleared? For the failure it never
+// went.
+bool Causes::comes_back(std::size_t j, std::size_t i, const Knowledge& knowledge) const {
+  const CauseNode& cause = nodes_[j];
+  const CauseNode& effect = nodes_[i];
+  if (effect.kind != CauseNode::Kind::kFailure) return false;
+  const Duration passing = duration_of(kPassing, knowledge.rules);
+  if (cause.is_rule()) {
+    const Time gone = knowledge.states[cause.rule].gone_since;
+    const bool was_there =
+        effect.onset.earliest <= gone && gone <= knowledge.states[effect.rule].masked_until;
+    if (was_there &&
+        cause.onset.earliest <= echo_ends(effect.rule, cause.rule, gone, passing, knowledge))
+      return true;
+  }
+  const auto was_in_trouble = [&](ComponentId c) {
+    const auto& past = knowledge.components[c].past_trouble;
+    if (!past || !past->may_have_led_to(effect.onset)) return false;
+    const Time echo = echo_ends(effect.rule, {}, past->over, passing, knowledge);
+    return cause.onset.latest <= std::max(echo, later(past->over, kLongestEvidence));
+  };
+  return cause.is_rule() ? std::ranges::any_of(touched_by(cause.rule, knowledge), was_in_trouble)
+                         : was_in_trouble(cause.component);
 }
 
 double Causes::timely(std::size_t j, std::size_t i) const {
   const CauseNode& cause = nodes_[j];
-  const bool was_another_before =
-      cause.kind == CauseNode::Kind::kTrouble && cause.onset.latest > nodes_[i].onset.latest;
+  const bool is_later = cause.onset.latest > nodes_[i].onset.latest;
   const Time began =
-      was_another_before ? std::min(cause.onset.latest, cause.first_onset) : cause.onset.latest;
+      is_later ? std::min(cause.onset.latest, cause.troubled_since) : cause.onset.latest;
   const Time worked = nodes_[i].worked_until;
   if (began == kLongAgo || began == kNever || worked <= later(began, kUsualDelay)) return 1;
   const double share = seconds(kUsualDelay) / seconds(worked - began);

@@ -47,9 +47,10 @@ struct CauseNode {
   std::string channel{};    // kUnsupplied: the topic or service
   Onset onset;
   Time worked_until = kLongAgo;  // of a rule: when it was seen to be well last
-  // The latest onset of the first detection of a rule, or of the trouble that the component had before this one.
-  Time first_onset = kNever;
-  // Of a failure: when its component began anew, or a cause of it cleared, and it was there still.
+  Time first_onset = kNever;     // of a rule: the latest onset of its first detection
+  // The latest onset of the first trouble of its components, which became another one since; kNever: of none.
+  Time troubled_since = kNever;
+  // Of a failure: when its component began anew, a cause of it cleared, or a strategy for it failed, and it was there still.
   Time unclear_until = kLongAgo;
   bool is_outage = false;  // of a rule: that reads no values
 
@@ -93,7 +94,8 @@ class Causes {
   bool can_explain(std::size_t j, std::size_t i, const Knowledge& knowledge) const;
   bool may_be_effect(std::size_t silent, std::size_t i, const Reach& reach,
                      const Knowledge& knowledge) const;
-  bool can_precede(std::size_t j, std::size_t i) const;
+  bool can_precede(std::size_t j, std::size_t i, const Knowledge& knowledge) const;
+  bool comes_back(std::size_t j, std::size_t i, const Knowledge& knowledge) const;
   void find_loops(const BitRows& effects);
 
   std::vector<CauseNode> nodes_;

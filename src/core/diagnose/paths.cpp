@@ -68,7 +68,7 @@ void add_slow_topics(const Knowledge& knowledge, std::vector<Signs>& signs) {
   const auto outage = static_cast<std::size_t>(Symptom::kOutage);
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
     const auto& rhythm = knowledge.signals.rhythm(TopicId(t));
-    if (!rhythm.slowing || rhythm.slowing->over != rhythm.last || !rhythm.is_steady()) continue;
+    if (!rhythm.slowing || !rhythm.is_steady()) continue;
     const auto publisher = knowledge.graph.only_publisher(knowledge.rules[TopicId(t)]);
     if (!publisher) continue;
     Signs& of = signs[publisher->index];

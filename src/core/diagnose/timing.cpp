@@ -8,19 +8,17 @@ namespace {
 
 using Kind = Input::Kind;
 
-// Did the last message come later than usual?
-bool is_slow(const SignalStore::Rhythm& rhythm) {
-  return rhythm.slowing && rhythm.slowing->over == rhythm.last;
-}
-
 // The onset of a silence or a death that the input shows now; empty: it shows none.
 std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& knowledge) {
   if (watches_a_topic(input)) {
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
     if (is_silent(input.topic, now, knowledge))
       return Onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
-    if (input.kind == Kind::kRate && is_slow(rhythm))
-      return Onset{rhythm.slowing->since, later(rhythm.slowing->since, rhythm.slowing->gap)};
+    if (input.kind == Kind::kRate && rhythm.slowing) {
+      // Some messages in time do not make it later than what it slows down.
+      return Onset{std::min(rhythm.slowing->since, now - input.window),
+                   later(rhythm.slowing->since, rhythm.slowing->gap)};
+    }
     if (input.kind == Kind::kRate) return Onset{now - input.window, now};
     if (rhythm.last) return Onset{*rhythm.last, now};
     return std::nullopt;
@@ -222,21 +220,32 @@ Duration remembers(RuleId rule, const RuleSet& rules) {
   return longest;
 }
 
+bool counts_events(const Input& input) {
+  return input.kind == Kind::kLogs || input.kind == Kind::kGoals;
+}
+
 bool is_bad_anew(RuleId rule, Time since, const Knowledge& knowledge) {
   return std::ranges::any_of(knowledge.rules[rule].inputs, [&](InputId id) {
     const Input& input = knowledge.rules[id];
+    if (counts_events(input)) return knowledge.signals.arrivals(id).last > since;
     if (!watches_a_topic(input)) return false;
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
-    if (!rhythm.last) return false;
-    return is_slow(rhythm)
-               ? rhythm.slowing->since > since
-               : *rhythm.last > since && is_silent(input.topic, knowledge.now, knowledge);
+    if (!rhythm.last || rhythm.gap == Duration::zero()) return false;
+    if (rhythm.slowing)
+      return *rhythm.last > later(std::max(since, rhythm.slowing->since), 2 * rhythm.slowing->gap);
+    return knowledge.now > later(std::max(rhythm.silent_since(), since), kSilentGaps * rhythm.gap);
   });
 }
 
 Duration clears_within(RuleId failure, const Knowledge& knowledge) {
   return knowledge.signals.latency(failure) + knowledge.latencies.reckon_with(failure) +
          held_at_most(failure, knowledge);
+}
+
+Time settles_by(RuleId failure, Time since, Time until, const Knowledge& knowledge) {
+  const Time usual = later(since, kLongestEvidence);
+  const Time passed = later(since, duration_of(kPassing, knowledge.rules));
+  return until > usual && is_bad_anew(failure, passed, knowledge) ? usual : until;
 }
 
 }  // namespace culprit::diagnose

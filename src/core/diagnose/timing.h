@@ -54,6 +54,8 @@ inline constexpr int kSilentGaps = SignalStore::Rhythm::kSilentGaps;
 // takes longer than the other.
 inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
 inline constexpr Duration kLongestPlainEvidence = std::chrono::seconds(30);
+// How long a bad value usually takes along the graph.
+inline constexpr Cycles kPassing{5};
 
 // Is the topic silent at `now` for longer than it usually is? Not while its rhythm is unknown.
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
@@ -94,7 +96,10 @@ bool may_yet_show(RuleId quiet, Time onset, const Knowledge& knowledge);
 Duration clears_within(RuleId failure, const Knowledge& knowledge);
 // The longest window that the rule looks back on: so long it remembers what was before its cause cleared.
 Duration remembers(RuleId rule, const RuleSet& rules);
-// Was a topic that the rule reads received again after `since`, and has fallen silent or slow anew?
+// Does what the rule watches show that it is bad after `since`, too: a message is missing or late, or an event came?
 bool is_bad_anew(RuleId rule, Time since, const Knowledge& knowledge);
+// When a failure that may clear with a cause, which is over `since` then, has had its time: `until`, or earlier if it
+// is bad anew.
+Time settles_by(RuleId failure, Time since, Time until, const Knowledge& knowledge);
 
 }  // namespace culprit::diagnose

@@ -39,6 +39,7 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>&
                                        const Knowledge& knowledge) {
   auto seen = present_trouble(component, published, knowledge);
   const auto& first = knowledge.components[component].troubled;
+  if (seen) seen->began = seen->onset.earliest;
   if (seen && first) {
     seen->onset.earliest = std::min(seen->onset.earliest, first->earliest);
     seen->first_onset = first->latest;
@@ -110,9 +111,9 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
         may_be_lost(topic, knowledge.now, knowledge))
       continue;
     const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);
-    if (component && !all[component->index] && !knowledge.is_unheard(*component))
-      all[component->index] = TroubleSeen{
-          Trouble::kSilent, {*rhythm.last, later(rhythm.silent_since(), rhythm.gap)}, topic};
+    if (!component || all[component->index] || knowledge.is_unheard(*component)) continue;
+    const Onset onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
+    all[component->index] = TroubleSeen{Trouble::kSilent, onset, topic, kNever, onset.earliest};
   }
   return all;
 }

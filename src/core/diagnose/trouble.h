@@ -31,7 +31,8 @@ struct TroubleSeen {
   Trouble trouble = Trouble::kExited;
   Onset onset;                     // `earliest` of the first trouble: it hung, and was killed
   std::optional<TopicId> topic{};  // kSilent: that is silent
-  Time first_onset = kNever;       // the latest onset of that
+  Time first_onset = kNever;       // the latest onset of the first trouble
+  Time began = kLongAgo;           // the earliest onset of this one
 };
 
 // The worst known trouble of the component now; empty: no trouble is known. A component on an

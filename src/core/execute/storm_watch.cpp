@@ -6,9 +6,9 @@
 
 #include "base/sort_unique.h"
 #include "diagnose/awaited.h"
+#include "diagnose/causes.h"
 #include "diagnose/imminent.h"
 #include "diagnose/touched.h"
-#include "diagnose/trouble.h"
 
 namespace culprit::execute {
 
@@ -70,8 +70,9 @@ std::optional<StormWatch::Storm> StormWatch::look(Time now) {
   }
   if (knowledge_.states.active().size() + lately_.size() < static_cast<std::size_t>(options_.least))
     return {};
-  if (!is_much(ill_roots(std::vector<bool>(all)).components)) return std::nullopt;
-  std::vector<bool> suspects = all_suspects();
+  if (!is_much(ill_roots({std::vector<bool>(all), {all, std::nullopt}}).components))
+    return std::nullopt;
+  Suspects suspects = all_suspects();
   IllRoots ill = ill_roots(suspects);
   if (!is_much(ill.components)) return std::nullopt;
   add_awaited(suspects);
@@ -117,34 +118,31 @@ void StormWatch::look_for_failures(Time now) {
   });
 }
 
-// Components that look bad although no rule about them has fired: a rule may yet fire, or none is about
-// them.
-std::vector<bool> StormWatch::all_suspects() const {
-  std::vector<bool> suspects(knowledge_.rules.components.size());
+StormWatch::Suspects StormWatch::all_suspects() const {
+  Suspects suspects{std::vector<bool>(knowledge_.rules.components.size()),
+                    diagnose::all_troubles(knowledge_)};
   for (const RuleId rule : diagnose::imminent_rules(knowledge_)) {
     for (const ComponentId component : knowledge_.rules[rule].components)
-      suspects[component.index] = true;
+      suspects.rules[component.index] = true;
   }
-  const auto troubles = diagnose::all_troubles(knowledge_);
-  for (std::size_t c = 0; c < suspects.size(); ++c) suspects[c] = suspects[c] || troubles[c];
   return suspects;
 }
 
 // Where a rule can still fire as the cause of a failure: until then, their number proves nothing.
-void StormWatch::add_awaited(std::vector<bool>& suspects) {
+void StormWatch::add_awaited(Suspects& suspects) {
   const diagnose::Awaited awaited(knowledge_, knowledge_.states.active());
   for (const RuleId failure : knowledge_.states.active()) {
     const auto found = awaited.of(failure);
     if (!found || found->is_echo) continue;
     for (const ComponentId component : diagnose::spreads_from(found->because, knowledge_))
-      suspects[component.index] = true;
+      suspects.rules[component.index] = true;
     look_again_ = std::min(look_again_, found->until);
   }
 }
 
 // Components that a failing rule is about, or one whose failure began a moment ago and is gone, and that
 // nothing upstream explains; and these failures.
-StormWatch::IllRoots StormWatch::ill_roots(const std::vector<bool>& suspects) const {
+StormWatch::IllRoots StormWatch::ill_roots(const Suspects& suspects) const {
   std::vector<RuleId> failures = knowledge_.states.active();
   std::ranges::copy_if(lately_, std::back_inserter(failures),
                        [&](RuleId id) { return !knowledge_.states.is_active(id); });
@@ -154,11 +152,9 @@ StormWatch::IllRoots StormWatch::ill_roots(const std::vector<bool>& suspects) co
     for (const ComponentId component : knowledge_.rules[id].components) {
       if (has_clear_cause(id, component)) continue;
       const auto& upstream = knowledge_.graph.upstream(component);
-      const bool is_explained =
-          std::any_of(upstream.begin(), upstream.end(), [&](ComponentId other) {
-            return other != component && (is_dead_[other.index] || suspects[other.index] ||
-                                          is_or_was_ill(other, id) || was_in_trouble(other, id));
-          });
+      const bool is_explained = std::ranges::any_of(upstream, [&](ComponentId other) {
+        return other != component && is_explained_by(other, id, suspects);
+      });
       if (is_explained) continue;
       roots.push_back(component);
       if (found.failures.empty() || found.failures.back() != id) found.failures.push_back(id);
@@ -176,6 +172,13 @@ bool StormWatch::has_clear_cause(RuleId failure, ComponentId component) const {
   return is_dead_[component.index] || knowledge_.unheard_behind(failure);
 }
 
+bool StormWatch::is_explained_by(ComponentId component, RuleId failure,
+                                 const Suspects& suspects) const {
+  return is_dead_[component.index] || suspects.rules[component.index] ||
+         is_or_was_ill(component, failure) || is_in_trouble(component, failure, suspects) ||
+         was_in_trouble(component, failure);
+}
+
 // Is or was there a failure of it, other than that of `except`?
 bool StormWatch::is_or_was_ill(ComponentId component, RuleId except) const {
   if (knowledge_.states.is_sick(component, Criticality::kNonCritical, except)) return true;
@@ -184,11 +187,23 @@ bool StormWatch::is_or_was_ill(ComponentId component, RuleId except) const {
   });
 }
 
-// Was it in trouble when the failure began, and works again?
+// Is it in a trouble that can explain the failure? What has worked beside it for long needs another cause.
+bool StormWatch::is_in_trouble(ComponentId component, RuleId failure,
+                               const Suspects& suspects) const {
+  const auto& trouble = suspects.troubles[component.index];
+  if (!trouble) return false;
+  const RuleState& state = knowledge_.states[failure];
+  const bool never_worked = state.detection.last_false == kLongAgo;
+  return never_worked || !state.onset ||
+         state.onset->earliest <= later(trouble->onset.latest, diagnose::kUsualDelay);
+}
+
+// Did the failure begin with a trouble of it that is over?
 bool StormWatch::was_in_trouble(ComponentId component, RuleId failure) const {
   const auto& past = knowledge_.components[component].past_trouble;
   const auto& onset = knowledge_.states[failure].onset;
-  return past && onset && past->may_have_led_to(*onset);
+  return past && onset && past->may_have_led_to(*onset) &&
+         onset->earliest <= later(past->since, diagnose::kUsualDelay);
 }
 
 }  // namespace culprit::execute

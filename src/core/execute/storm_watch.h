@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/trouble.h"
 #include "knowledge/knowledge.h"
 
 namespace culprit::execute {
@@ -56,14 +57,21 @@ class StormWatch {
   std::optional<Storm> look(Time now);
   void look_for_dead();
   void look_for_failures(Time now);
-  std::vector<bool> all_suspects() const;
-  void add_awaited(std::vector<bool>& suspects);
+  // What looks bad although no rule about it has fired, by component.
+  struct Suspects {
+    std::vector<bool> rules;  // one may still fire
+    std::vector<std::optional<diagnose::TroubleSeen>> troubles;
+  };
+  Suspects all_suspects() const;
+  void add_awaited(Suspects& suspects);
   struct IllRoots {
     std::size_t components = 0;
     std::vector<RuleId> failures{};
   };
-  IllRoots ill_roots(const std::vector<bool>& suspects) const;
+  IllRoots ill_roots(const Suspects& suspects) const;
+  bool is_explained_by(ComponentId component, RuleId failure, const Suspects& suspects) const;
   bool is_or_was_ill(ComponentId component, RuleId except) const;
+  bool is_in_trouble(ComponentId component, RuleId failure, const Suspects& suspects) const;
   bool was_in_trouble(ComponentId component, RuleId failure) const;
   bool has_clear_cause(RuleId failure, ComponentId component) const;
   bool is_much(std::size_t components) const;

@@ -56,7 +56,8 @@ class SignalStore {
   // When a signal was read last; kLongAgo for inputs that no reading brings.
   Time read_at(InputId id) const { return read_at_[id.index]; }
   void set_read_at(InputId id, Time at) { read_at_[id.index] = at; }
-  // When values of a signal or a diagnostic come. `gap` is the usual pause between two.
+  // When values of a signal or a diagnostic come. `gap` is the usual pause between two. Of events that are counted
+  // (logs, goals) only `last` is known.
   struct Arrivals {
     Time last = kLongAgo;
     Duration gap{};
@@ -109,17 +110,18 @@ class SignalStore {
     };
     std::optional<Silence> silence{};
     // The last messages, each of which came later after the one before than kSlowPace of the gaps that were usual
-    // before them. The topic becomes slow if they end with `last`.
+    // before them. One in between may come in time.
     struct Slowing {
-      Time since{};    // the last message that came in time
-      Time over{};     // the last one of them
-      Duration gap{};  // that was usual before
+      Time since{};     // the last message that came in time
+      Duration gap{};   // that was usual before
+      int in_time = 0;  // the last messages that came in time again
     };
-    std::optional<Slowing> slowing{};
+    std::optional<Slowing> slowing{};  // empty: it is not slow
     bool is_slow_since(Time at) const {
-      return slowing && slowing->over == last && slowing->since <= later(at, slowing->gap);
+      return slowing && slowing->since <= later(at, slowing->gap);
     }
     static constexpr double kSlowPace = 1.5;
+    static constexpr int kBackInPace = 3;  // messages in time: it is not slow any more
 
     // Does it come all the time? A topic that is sent on demand pauses often or for long.
     bool is_steady() const { return gap > Duration::zero() && paused <= flowed / kFlowsForPause; }

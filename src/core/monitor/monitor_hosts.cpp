@@ -11,6 +11,7 @@ void Monitor::on(Time at, const LogSeen& seen) {
   for (const InputId id : component_inputs_[seen.component.index]) {
     const Input& input = knowledge_.rules[id];
     if (input.kind != Input::Kind::kLogs || seen.level < input.log_level) continue;
+    write_.signals.set_arrivals(id, {at});
     if (!derived_[id.index].count.add(at, 1)) note_overflow(id, at);
     update(id, at);
   }

@@ -25,15 +25,17 @@ void note_silence(SignalStore::Rhythm& rhythm, Duration interval, Time at) {
 }
 
 // A message comes after `interval`.
-void note_pace(SignalStore::Rhythm& rhythm, Duration interval, Time at) {
+void note_pace(SignalStore::Rhythm& rhythm, Duration interval) {
   auto& slowing = rhythm.slowing;
-  if (slowing && slowing->over != *rhythm.last) slowing.reset();
   const Duration usual = slowing ? slowing->gap : rhythm.gap;
   const bool is_slow = usual > Duration::zero() &&
                        seconds(interval) > SignalStore::Rhythm::kSlowPace * seconds(usual);
-  if (!is_slow) return;
-  if (!slowing) slowing = {*rhythm.last, at, usual};
-  slowing->over = at;
+  if (is_slow) {
+    if (!slowing) slowing = {*rhythm.last, usual};
+    slowing->in_time = 0;
+  } else if (slowing && ++slowing->in_time == SignalStore::Rhythm::kBackInPace) {
+    slowing.reset();
+  }
 }
 
 }  // namespace
@@ -54,7 +56,7 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
     note_pause(rhythm, interval, seen.topic);
     rhythm.interval = smoothed(rhythm.interval, interval);
-    note_pace(rhythm, interval, at);
+    note_pace(rhythm, interval);
     note_silence(rhythm, interval, at);
   }
   rhythm.last = topic.last = at;
@@ -232,9 +234,9 @@ void Monitor::on(Time at, const GoalsSeen& seen) {
 void Monitor::count_goal(TopicId topic, GoalStatus outcome, Time at) {
   for (const InputId id : topics_[topic.index].inputs) {
     const Input& input = knowledge_.rules[id];
-    if (input.kind == Kind::kGoals && input.outcome == outcome &&
-        !derived_[id.index].count.add(at, 1))
-      note_overflow(id, at);
+    if (input.kind != Kind::kGoals || input.outcome != outcome) continue;
+    write_.signals.set_arrivals(id, {at});
+    if (!derived_[id.index].count.add(at, 1)) note_overflow(id, at);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/causes.h"
 #include "diagnose/known_down.h"
 #include "plan/also_ended.h"
 
@@ -117,9 +118,14 @@ std::optional<Exclusions::Obstacle> Exclusions::obstacle(std::size_t place,
   if (auto next = in_the_way(place, planned_[level])) {
     if (!need_not_wait || has(planned_[level].bits(), place)) return next;
   }
-  // Without a supplier that is in trouble, the others can show nothing.
-  const bool is_in_trouble = troubles_[reach_[place].index].has_value();
-  return takes_down(strategy) && !is_in_trouble ? in_the_way(place, judged_[level]) : std::nullopt;
+  if (!takes_down(strategy)) return std::nullopt;
+  // Without a supplier that is in trouble now, the others can show nothing.
+  const auto judged = in_the_way(place, judged_[level]);
+  const auto& trouble = troubles_[reach_[place].index];
+  const bool hides_it =
+      judged && trouble &&
+      onset_of(*judged->because, knowledge_).latest <= later(trouble->onset.latest, kUsualDelay);
+  return hides_it ? std::nullopt : judged;
 }
 
 // Does what is at `place`, or depends on it, belong to one of the failures?

@@ -49,13 +49,14 @@ void ReasonsToWait::look_at(WeighedCandidate& weighed, double chance) const {
     const Settling& settling = *knowledge_.states[rule].settling;
     exclude(weighed,
             {Condition::kSettling, likely_.likeliest_component(settling.with), settling.with});
-    ends(weighed, settling.until);
+    ends(weighed, settles_by(rule, settling.since, settling.until, knowledge_));
   }
 }
 
 bool ReasonsToWait::is_settling(RuleId rule) const {
   const auto& settling = knowledge_.states[rule].settling;
-  return settling && knowledge_.now < settling->until &&
+  return settling &&
+         knowledge_.now < settles_by(rule, settling->since, settling->until, knowledge_) &&
          !knowledge_.signals.is_read_since(rule, settling->since) &&
          knowledge_.couplings.of(settling->with, rule).clears(Coupling::kUsual) > 0.5;
 }

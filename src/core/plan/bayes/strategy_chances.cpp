@@ -7,6 +7,7 @@
 #include "diagnose/causes.h"
 #include "diagnose/known_down.h"
 #include "diagnose/still_there.h"
+#include "plan/bayes/exclusions.h"
 
 namespace culprit::plan {
 namespace {
@@ -57,6 +58,28 @@ std::vector<ComponentId> evidently_ill(RuleId rule, Troubles troubles, const Kno
   return ill;
 }
 
+// It would end what works, and leave a supplier down that another strategy of its rule replaces.
+std::optional<Invalid> lacks_supplier(const Strategy& strategy, const std::vector<ComponentId>& ill,
+                                      Troubles troubles, const Knowledge& knowledge) {
+  const auto works = [&](ComponentId c) {
+    const auto& trouble = troubles[c.index];
+    return !trouble || trouble->trouble == Trouble::kSilent;
+  };
+  const auto needs = [&](const Adaptation& a, ComponentId supplier) {
+    return !takes_down(a) || (works(a.component) && is_upstream(supplier, a.component, knowledge));
+  };
+  for (const ComponentId c : ill) {
+    const bool is_in_vain =
+        takes_down(strategy) && diagnose::answers_nothing(troubles[c.index]->trouble) &&
+        std::ranges::all_of(strategy.adaptations, [&](const Adaptation& a) { return needs(a, c); });
+    if (!is_in_vain) continue;
+    const std::string& supplier = knowledge.rules[c].name;
+    return Invalid{c, "ends what needs " + supplier + ", and " + supplier + " " +
+                          std::string(to_string(troubles[c.index]->trouble))};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<StrategyChance> strategy_chances(RuleId rule, Troubles troubles,
@@ -80,6 +103,8 @@ std::vector<StrategyChance> strategy_chances(RuleId rule, Troubles troubles,
     each.leaves_ill = leaves_it_ill(strategy);
     if (each.leaves_ill) each.chance *= kUnlikely;
     if (!each.is_tried) each.invalid = invalidity(strategy, knowledge);
+    if (!each.is_out() && each.leaves_ill)
+      each.invalid = lacks_supplier(strategy, ill, troubles, knowledge);
     each.is_withheld = !each.is_out() && !knowledge.withheld[strategies[s].index].reason.empty();
     sum += each.chance;
     all.push_back(std::move(each));
