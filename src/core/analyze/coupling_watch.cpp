@@ -92,7 +92,8 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
   const Duration slack = std::max(knowledge_.signals.latency(cause), knowledge_.rules.cycle);
   const Time begun = knowledge_.states[cause].first_detected();
   // Its alarm may have come last.
-  const Time onset = std::min(begun, diagnose::onset_of(cause, knowledge_).earliest);
+  const Time last_onset = diagnose::onset_of(cause, knowledge_).earliest;
+  const Time onset = std::min(begun, last_onset);
   const auto criticality = knowledge_.rules[cause].policies.criticality;
   for (const RuleId effect : knowledge_.states.active()) {
     const RuleState& state = knowledge_.states[effect];
@@ -107,7 +108,12 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
       return is_downstream[c.index] ||
              (is_lesser && std::find(repaired.begin(), repaired.end(), c) != repaired.end());
     });
-    if (!depends || later(state.first_detected(), slack) < onset) continue;
+    // It was there while a cause that comes and goes was not.
+    const Duration lasts =
+        diagnose::kLongestPlainEvidence + diagnose::remembers(effect, knowledge_.rules);
+    const bool outlasts =
+        later(state.failing_since, slack) < last_onset && later(state.failing_since, lasts) < now;
+    if (!depends || outlasts || later(state.first_detected(), slack) < onset) continue;
     const Duration latency = std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle);
     const Time since = later(now, delay(cause, effect));
     if (!state.settling || state.settling->until < later(since, latency))

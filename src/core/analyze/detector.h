@@ -5,8 +5,11 @@
 // unknown neither holds nor is false.
 #pragma once
 
+#include <vector>
+
 #include "analyze/known_silence.h"
 #include "knowledge/knowledge.h"
+#include "language/evaluate.h"
 
 namespace culprit {
 
@@ -20,7 +23,10 @@ class Detector {
  public:
   // Both must outlive it. It writes RuleState::detection alone.
   Detector(const Knowledge& knowledge, RuleStates& states)
-      : knowledge_(knowledge), states_(states), known_silence_(knowledge) {}
+      : knowledge_(knowledge),
+        states_(states),
+        known_silence_(knowledge),
+        guards_(guards_of(knowledge.rules)) {}
 
   // Evaluates the rule's trigger.
   void evaluate(RuleId id, Time now);
@@ -39,13 +45,16 @@ class Detector {
 
  private:
   Slot value(RuleId id, Time now);
-  bool has_heard_topics(RuleId id) const;
+  static std::vector<std::vector<Assumed>> guards_of(const RuleSet& rules);
+  Time worked_until(RuleId id, Time now) const;
   void sample_history(Detection& detection, Time now) const;
   Duration clearing_time(RuleId id) const;
 
   const Knowledge& knowledge_;
   RuleStates& states_;
   KnownSilence known_silence_;
+  // By rule: inputs that say nothing of what it is about, such as a mode, as if they were unknown.
+  std::vector<std::vector<Assumed>> guards_;
 };
 
 }  // namespace culprit

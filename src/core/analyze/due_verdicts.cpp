@@ -41,7 +41,13 @@ Time DueVerdicts::deadline(const Attempt& attempt) const {
       std::max(duration_of(strategy.impact, knowledge_.rules), knowledge_.latencies.patience(id));
   const Time given = std::max({later(attempt.effective, impact), shows_from(attempt),
                                knowledge_.signals.heard_again_by(id), hidden_until(attempt)});
-  return later(given, knowledge_.signals.latency(id));
+  const Time deadline = later(given, knowledge_.signals.latency(id));
+  // What it started may have begun late to show what the rule reads.
+  const bool may_be_late = std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
+    return launches(a) && knowledge_.rules[a.component].ready > Duration::zero();
+  });
+  return may_be_late && attempt.deadline != kNever ? std::max(attempt.deadline, deadline)
+                                                   : deadline;
 }
 
 DueVerdicts::Verdict DueVerdicts::verdict(const Attempt& attempt, Time now) const {

@@ -1,6 +1,7 @@
 #include "analyze/trouble_watch.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "diagnose/trouble.h"
 
@@ -10,8 +11,10 @@ void TroubleWatch::look(Time now, bool is_any_failing) {
   if (!is_any_failing) {
     open_.clear();
     over_.clear();
+    is_watching_ = false;
     return;
   }
+  if (!std::exchange(is_watching_, true)) note_silences_before(now);
   const auto troubles = diagnose::all_troubles(knowledge_);
   withdraw();
   std::erase_if(open_, [&](Open& each) {
@@ -26,6 +29,21 @@ void TroubleWatch::look(Time now, bool is_any_failing) {
     const bool is_open = std::ranges::find(open_, ComponentId(c), &Open::component) != open_.end();
     if (troubles[c] && !is_open)
       open_.push_back({ComponentId(c), troubles[c]->onset.earliest, troubles[c]->topic});
+  }
+}
+
+// Those that ended just before the first failure was detected.
+void TroubleWatch::note_silences_before(Time now) {
+  for (std::size_t t = 0; t < knowledge_.rules.topics.size(); ++t) {
+    const TopicId topic(t);
+    const auto& silence = knowledge_.signals.rhythm(topic).silence;
+    if (!silence || later(silence->over, diagnose::kLongestEvidence) < now) continue;
+    const auto component = knowledge_.graph.only_publisher(knowledge_.rules[topic]);
+    if (!component) continue;
+    auto& past = components_[*component].past_trouble;
+    if (past && past->over >= silence->over) continue;
+    over_.push_back({*component, silence->since, topic});
+    past = PastTrouble{silence->since, silence->over};
   }
 }
 

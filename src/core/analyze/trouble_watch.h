@@ -30,6 +30,7 @@ class TroubleWatch {
     std::optional<TopicId> topic;  // of a silence
   };
 
+  void note_silences_before(Time now);
   void close(const Open& trouble, Time now);
   bool is_over(const Open& silence) const;
   void withdraw();
@@ -38,6 +39,7 @@ class TroubleWatch {
   ComponentStates& components_;
   std::vector<Open> open_;
   std::vector<Open> over_;  // silences that may yet turn out to be slow messages
+  bool is_watching_ = false;
 };
 
 }  // namespace culprit

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "diagnose/touched.h"
+#include "diagnose/unclear.h"
 
 namespace culprit::diagnose {
 namespace {
@@ -283,7 +284,10 @@ Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {
   const Onset onset = onset_of(failure, knowledge_);
   const std::optional<RuleId> cause = past.component ? std::nullopt : past.rule;
   const Time passed = last_passed_on(failure, cause, past.over, passing, knowledge_);
-  if (cause == failure || !has_echo || past.began > onset.latest || onset.earliest > passed)
+  const bool is_known = knowledge_.states[failure].onset.has_value();
+  const Time latest =
+      is_known ? std::max(onset.latest, unclear_until(failure, knowledge_)) : onset.latest;
+  if (cause == failure || !has_echo || past.began > latest || onset.earliest > passed)
     return kLongAgo;
   return echo_ends(failure, cause, past.over, passing, knowledge_);
 }

@@ -11,7 +11,8 @@
 //                                                            components upstream (or i's own) that a
 //                                                            strategy began anew lately or that
 //                                                            were in trouble lately, if
-//                                                            e_u <= l_i and e_i <= r_u + passing
+//                                                            e_u <= max(l_i, unclear.h) and
+//                                                            e_i <= r_u + passing
 //
 //   e_i, E_u        onset and evidence time (timing.h); d_i the detection of i
 //   b_i             when i presumably began: l_i, less the presumed lateness of a value's rule, but at

@@ -9,6 +9,7 @@
 #include "diagnose/imminent.h"
 #include "diagnose/known_down.h"
 #include "diagnose/touched.h"
+#include "diagnose/unclear.h"
 
 namespace culprit::diagnose {
 namespace {
@@ -48,25 +49,6 @@ std::size_t level_of(const Rule& rule) {
 // Does a strategy of its rule do more than to reconfigure?
 bool may_be_broken(RuleId rule, const RuleSet& rules) {
   return std::ranges::any_of(rules[rule].strategies, [&](StrategyId s) { return mends(rules[s]); });
-}
-
-// When the last process of a component that the rule touches began, and its node was there, if that
-// runs.
-Time begun_last(RuleId rule, const Knowledge& knowledge) {
-  Time last = kLongAgo;
-  for (const ComponentId c : touched_by(rule, knowledge)) {
-    const ComponentState& state = knowledge.components[c];
-    if (state.process == ProcessState::kRunning)
-      last = std::max({last, state.process_since, state.node_seen});
-  }
-  return last;
-}
-
-// Until when a cause of what the failure shows now may have begun, besides its onset. Unknown if
-// an earlier culprit detected the failure.
-Time unclear_until(RuleId failure, const Knowledge& knowledge) {
-  const RuleState& state = knowledge.states[failure];
-  return state.onset ? std::max(begun_last(failure, knowledge), state.masked_until) : knowledge.now;
 }
 
 // The latest onset of the first of its troubles that followed one another, this one included.
@@ -165,14 +147,15 @@ bool is_seen_twice(RuleId j, RuleId i, std::span<const ComponentId> touched,
 }
 
 // Stands for the trouble of its components, too: its rule may have fired long after the process was down, as while
-// culprit was deaf.
+// culprit was deaf, or a group had time to come up.
 void begin_with_its_process(CauseNode& failure,
                             std::span<const std::optional<TroubleSeen>> troubles,
                             const Knowledge& knowledge) {
   for (const ComponentId c : touched_by(failure.rule, knowledge)) {
     const auto& seen = troubles[c.index];
     const bool is_proof =
-        seen && (seen->trouble == Trouble::kExited || seen->trouble == Trouble::kStopped);
+        seen && (seen->trouble == Trouble::kExited || seen->trouble == Trouble::kStopped ||
+                 seen->trouble == Trouble::kNotActive);
     if (!is_proof) continue;
     failure.onset.earliest = std::min(failure.onset.earliest, seen->onset.earliest);
     failure.troubled_since = std::min(failure.troubled_since, troubled_since(c, *seen, knowledge));
@@ -201,6 +184,7 @@ Causes::Causes(const Knowledge& knowledge, const Reach& reach, const Paths& path
     : places_(knowledge.rules.rules.size(), kAbsent) {
   add_rules(knowledge, imminent);
   add_troubles(knowledge, troubles);
+  outlast_troubles(reach, knowledge);
   add_unsupplied(knowledge);
   causes_ = BitRows(size(), size());
   learned_ = BitRows(size(), size());
@@ -236,7 +220,9 @@ void Causes::add_rules(const Knowledge& knowledge, std::span<const RuleId> immin
     node.worked_until =
         std::min(is_imminent ? states[rule].detection.last_false : states[rule].worked_until,
                  node.first_onset);
-    if (!is_imminent) node.unclear_until = unclear_until(rule, knowledge);
+    if (is_imminent) continue;
+    // If an earlier culprit detected it, its onset is unknown.
+    node.unclear_until = states[rule].onset ? unclear_until(rule, knowledge) : knowledge.now;
   }
 }
 
@@ -268,14 +254,50 @@ void Causes::add_troubles(const Knowledge& knowledge,
   }
 }
 
+// A failure that began with a trouble upstream and outlasts it has another cause, which may have begun until then.
+void Causes::outlast_troubles(const Reach& reach, const Knowledge& knowledge) {
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    const auto& past = knowledge.components[ComponentId(c)].past_trouble;
+    if (!past || !reach.holds(ComponentId(c))) continue;
+    const std::size_t place = reach.place_of(ComponentId(c));
+    for (CauseNode& node : nodes_) {
+      if (node.kind != CauseNode::Kind::kFailure || !past->may_have_led_to(node.onset)) continue;
+      const bool is_upstream = std::ranges::any_of(
+          touched_by(node.rule, knowledge),
+          [&](ComponentId touched) { return has(reach.upstream(reach.place_of(touched)), place); });
+      if (is_upstream)
+        node.unclear_until =
+            std::max(node.unclear_until, shows_by(node.rule, past->over, knowledge));
+    }
+  }
+}
+
 void Causes::add_unsupplied(const Knowledge& knowledge) {
   const std::size_t rules = nodes_.size();
+  const bool is_any_never_seen = std::ranges::any_of(nodes_, [](const CauseNode& node) {
+    return node.kind == CauseNode::Kind::kTrouble && node.trouble == Trouble::kNeverSeen;
+  });
+  const auto is_unsupplied = [&](ComponentId c) {
+    return knowledge.graph.unsupplied_input(c).has_value();
+  };
   for (std::size_t i = 0; i < rules; ++i) {
     const RuleId rule = nodes_[i].rule;
-    if (nodes_[i].kind != CauseNode::Kind::kFailure || !never_worked(rule, knowledge)) continue;
+    // No data is needed to bring a component up.
+    if (nodes_[i].kind != CauseNode::Kind::kFailure || !never_worked(rule, knowledge) ||
+        is_about_states(rule, knowledge))
+      continue;
     for (const ComponentId c : touched_by(rule, knowledge)) {
-      if (auto channel = knowledge.graph.unsupplied_input(c))
-        nodes_.push_back({CauseNode::Kind::kUnsupplied, rule, c, {}, std::move(*channel), {}});
+      std::optional<ComponentId> lacking;
+      if (is_unsupplied(c)) lacking = c;
+      // What was never seen may be missing anywhere upstream, and the graph does not show where.
+      if (!lacking && is_any_never_seen) lacking = knowledge.graph.first_upstream(c, is_unsupplied);
+      if (!lacking) continue;
+      nodes_.push_back({CauseNode::Kind::kUnsupplied,
+                        rule,
+                        *lacking,
+                        {},
+                        *knowledge.graph.unsupplied_input(*lacking),
+                        {}});
     }
   }
 }
@@ -441,9 +463,8 @@ bool Causes::comes_back(std::size_t j, std::size_t i, const Knowledge& knowledge
 
 double Causes::timely(std::size_t j, std::size_t i) const {
   const CauseNode& cause = nodes_[j];
-  const bool is_later = cause.onset.latest > nodes_[i].onset.latest;
-  const Time began =
-      is_later ? std::min(cause.onset.latest, cause.troubled_since) : cause.onset.latest;
+  Time began = std::min(cause.onset.latest, cause.first_onset);
+  if (cause.onset.latest > nodes_[i].onset.latest) began = std::min(began, cause.troubled_since);
   const Time worked = nodes_[i].worked_until;
   if (began == kLongAgo || began == kNever || worked <= later(began, kUsualDelay)) return 1;
   const double share = seconds(kUsualDelay) / seconds(worked - began);

@@ -6,7 +6,8 @@
 //   - troubles (trouble.h) of components that no failure touches, or that began kUsualDelay after the
 //     last one that does: a supplier needs no rule, and one that was slow for long may be dead now;
 //   - inputs without a supplier: a failing rule that never saw its function work, of a component
-//     that reads a topic or calls a service that no node offers.
+//     that reads a topic or calls a service that no node offers; or, while a component was never seen, one
+//     upstream of it.
 //
 // Node j may be the cause of node i if a component of j is upstream of one of i, along a path that
 // the effect can have taken (paths.h). Criticality does not matter: the effects decide how bad a
@@ -87,6 +88,7 @@ class Causes {
   void add_rules(const Knowledge& knowledge, std::span<const RuleId> imminent);
   void add_troubles(const Knowledge& knowledge,
                     std::span<const std::optional<TroubleSeen>> troubles);
+  void outlast_troubles(const Reach& reach, const Knowledge& knowledge);
   void add_unsupplied(const Knowledge& knowledge);
   void connect(const Knowledge& knowledge, const Reach& reach, const Paths& paths);
   void connect_learned(const Knowledge& knowledge, std::size_t i);

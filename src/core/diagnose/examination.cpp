@@ -24,8 +24,14 @@ std::vector<ComponentId> components_that_matter(
   std::for_each(knowledge.states.active().begin(), knowledge.states.active().end(), add);
   std::for_each(knowledge.states.exhausted().begin(), knowledge.states.exhausted().end(), add);
   std::for_each(imminent.begin(), imminent.end(), add);
+  Time oldest = kNever;
+  for (const RuleId rule : knowledge.states.active())
+    oldest = std::min(oldest, onset_of(rule, knowledge).earliest);
   for (std::size_t c = 0; c < troubles.size(); ++c) {
-    if (troubles[c] || knowledge.is_unheard(ComponentId(c))) all.emplace_back(c);
+    const auto& past = knowledge.components[ComponentId(c)].past_trouble;
+    const bool may_have_led_to_one = past && past->over >= oldest;
+    if (troubles[c] || may_have_led_to_one || knowledge.is_unheard(ComponentId(c)))
+      all.emplace_back(c);
   }
   return all;
 }

@@ -23,9 +23,10 @@ class Reach {
 
   std::size_t size() const { return components_.size(); }
   ComponentId operator[](std::size_t place) const { return components_[place]; }
+  bool holds(ComponentId component) const { return places_[component.index] != kAbsent; }
   // @pre it is one of the components
   std::size_t place_of(ComponentId component) const {
-    CULPRIT_ASSERT(places_[component.index] != kAbsent);
+    CULPRIT_ASSERT(holds(component));
     return places_[component.index];
   }
 

@@ -42,12 +42,6 @@ Duration held_at_most(RuleId rule, const Knowledge& knowledge) {
   return duration_of(Cycles{window > 1 ? window : 0}, knowledge.rules);
 }
 
-// Does the input show a change of its signal only once that lasted for its window?
-bool is_over_window(const Input& input) {
-  return input.kind == Kind::kMean || input.kind == Kind::kMin || input.kind == Kind::kMax ||
-         input.kind == Kind::kStddev || input.kind == Kind::kFrozen;
-}
-
 // The onset of a bad value that made the trigger true `since` then.
 Onset onset_of_value(RuleId rule, Time since, const Knowledge& knowledge) {
   const Latencies::Range lateness = knowledge.latencies.lateness(rule);
@@ -63,6 +57,11 @@ bool comes_late(const SignalStore::Rhythm& rhythm, Time now) {
 }
 
 }  // namespace
+
+bool is_over_window(const Input& input) {
+  return input.kind == Kind::kMean || input.kind == Kind::kMin || input.kind == Kind::kMax ||
+         input.kind == Kind::kStddev || input.kind == Kind::kFrozen;
+}
 
 bool watches_a_topic(const Input& input) {
   return input.kind == Kind::kAge || input.kind == Kind::kPhi || input.kind == Kind::kRate;

@@ -67,6 +67,8 @@ std::vector<Time> published_last(const Knowledge& knowledge);
 // `published`, as published_last() says. A single one may be lost, or come while the component waits for a
 // supplier that answers still; and mostly more than two have to show that it hangs.
 Onset onset_of_hang(const ComponentState& state, Time published);
+// Does the input show a change of its signal only once that lasted for its window?
+bool is_over_window(const Input& input);
 // How long after a change the rule reads it at the latest, besides its lateness: the period of its
 // signal, and the window that it looks at.
 Duration reading_of(RuleId rule, const Knowledge& knowledge);

@@ -47,6 +47,21 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>&
   return seen;
 }
 
+// The one that sends the values of the input, if they have stopped to come. They pause longer where they are sent on demand.
+std::optional<ComponentId> silent_sender(InputId id, const Knowledge& knowledge) {
+  const Input& input = knowledge.rules[id];
+  const SignalStore::Arrivals& arrivals = knowledge.signals.arrivals(id);
+  const bool is_regular = input.subject() == Input::Subject::kSignal &&
+                          arrivals.count == SignalStore::kRegular &&
+                          knowledge.signals.confirmed_by(id) == kLongAgo;
+  const Duration usual = std::max(5 * arrivals.gap, 2 * arrivals.longest);
+  if (!is_regular || knowledge.now <= later(arrivals.last, usual)) return std::nullopt;
+  const auto* field = std::get_if<TopicField>(&knowledge.rules[input.signal].source);
+  if (field == nullptr) return publisher_of(input.signal, knowledge.rules);
+  if (may_be_lost(field->topic, knowledge.now, knowledge)) return std::nullopt;
+  return knowledge.graph.only_publisher(knowledge.rules[field->topic]);
+}
+
 }  // namespace
 
 std::string_view to_string(Trouble trouble) {
@@ -114,6 +129,13 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
     if (!component || all[component->index] || knowledge.is_unheard(*component)) continue;
     const Onset onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
     all[component->index] = TroubleSeen{Trouble::kSilent, onset, topic, kNever, onset.earliest};
+  }
+  for (std::size_t i = 0; i < knowledge.rules.inputs.size(); ++i) {
+    const auto component = silent_sender(InputId(i), knowledge);
+    if (!component || all[component->index] || knowledge.is_unheard(*component)) continue;
+    const SignalStore::Arrivals& arrivals = knowledge.signals.arrivals(InputId(i));
+    const Onset onset{arrivals.last, later(arrivals.last, arrivals.gap)};
+    all[component->index] = TroubleSeen{Trouble::kSilent, onset, {}, kNever, onset.earliest};
   }
   return all;
 }

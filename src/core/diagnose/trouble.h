@@ -19,7 +19,7 @@ enum class Trouble : std::uint8_t {
   kNotActive,  // its lifecycle was active, and is not any more
   kNotYetActive,  // its lifecycle is known and was never active
   kNeverSeen,     // it was not seen yet
-  kSilent         // a topic that it alone publishes, at a steady rate, is silent
+  kSilent  // a topic that it alone publishes, at a steady rate, is silent, or a signal that it sends
 };
 
 // For people, after the component's name: "exited", "hangs".
@@ -30,7 +30,7 @@ bool answers_nothing(Trouble trouble);
 struct TroubleSeen {
   Trouble trouble = Trouble::kExited;
   Onset onset;                     // `earliest` of the first trouble: it hung, and was killed
-  std::optional<TopicId> topic{};  // kSilent: that is silent
+  std::optional<TopicId> topic{};  // kSilent: that is silent; empty: a signal is
   Time first_onset = kNever;       // the latest onset of the first trouble
   Time began = kLongAgo;           // the earliest onset of this one
 };

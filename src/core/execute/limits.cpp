@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "diagnose/timing.h"
+
 namespace culprit::execute {
 namespace {
 
@@ -152,6 +154,15 @@ std::optional<Limits::Limit> Limits::backoff(ComponentId component, RuleId rule,
                knowledge_.rules[component].name + " was restarted a short while ago", until};
 }
 
+// How long its start may take, if nothing has come from it yet.
+Duration Limits::ready(ComponentId component) const {
+  const ComponentState& state = knowledge_.components[component];
+  const Duration most = knowledge_.rules[component].ready;
+  const bool is_starting = most > Duration::zero() && state.alive != false &&
+                           diagnose::published_last(knowledge_)[component.index] < state.node_seen;
+  return is_starting ? most : Duration::zero();
+}
+
 std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) const {
   const auto limit = [&](ComponentId c, Time since, Duration quiet) -> std::optional<Limit> {
     const Time until = later(since, quiet);
@@ -167,6 +178,8 @@ std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) cons
                                  ? std::max(options_.quiet_after_launch, options_.quiet_downstream)
                                  : options_.quiet_after_launch;
   if (auto own = limit(component, components_[component.index].launched, own_quiet)) return own;
+  if (auto start = limit(component, components_[component.index].launched, ready(component)))
+    return start;
   if (is_dead) return std::nullopt;
   for (const ComponentId upstream : producers) {
     // For those that it feeds, it is back when what it publishes is there.

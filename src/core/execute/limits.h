@@ -77,6 +77,7 @@ class Limits {
 
   std::optional<Limit> backoff(ComponentId component, RuleId rule, Time now) const;
   std::optional<Limit> quiet(ComponentId component, Time now) const;
+  Duration ready(ComponentId component) const;
   // `failed`: when the failure of `rule` was detected.
   void spend(StrategyId strategy, Time now, Time failed);
   void give_back(StrategyId strategy);

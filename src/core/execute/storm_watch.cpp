@@ -157,7 +157,8 @@ StormWatch::IllRoots StormWatch::ill_roots(const Suspects& suspects) const {
       });
       if (is_explained) continue;
       roots.push_back(component);
-      if (found.failures.empty() || found.failures.back() != id) found.failures.push_back(id);
+      found.failures.push_back(id);
+      break;  // one failure of several components is one that has failed
     }
   }
   sort_unique(roots);

@@ -1,6 +1,6 @@
 // Have so many components failed at once that acting would do more harm than good?
 //
-// A storm: many components have failed that nothing upstream explains (NodeHealthCheck's minHealthy, with the dependency
+// A storm: many failures, of a component each, that nothing upstream explains (NodeHealthCheck's minHealthy, with the dependency
 // graph taken into account). These do not count:
 //   - the consumers of a dead camera, also before its own alarm;
 //   - exited processes, whose cause is clear;

@@ -53,7 +53,7 @@ class SignalStore {
   // proves nothing about the present.
   Time heard_again_by(RuleId id) const;
 
-  // When a signal was read last; kLongAgo for inputs that no reading brings.
+  // When a signal was read last, or a goal of an action succeeded; kLongAgo for inputs that neither brings.
   Time read_at(InputId id) const { return read_at_[id.index]; }
   void set_read_at(InputId id, Time at) { read_at_[id.index] = at; }
   // When values of a signal or a diagnostic come. `gap` is the usual pause between two. Of events that are counted
@@ -61,7 +61,8 @@ class SignalStore {
   struct Arrivals {
     Time last = kLongAgo;
     Duration gap{};
-    int count = 0;  // no more are counted than kRegular
+    int count = 0;       // no more are counted than kRegular
+    Duration longest{};  // the longest pause that ended by itself
   };
   // From so many values on, `gap` is known.
   static constexpr int kRegular = 4;
@@ -101,7 +102,7 @@ class SignalStore {
     // received all the time until now. May be a little ahead.
     Time resumed = kLongAgo;
     Time heard_again_by = kLongAgo;  // after that time: when a sample would have come at the latest
-    // The last pause that was longer than kSilentGaps of the usual gaps, as they were known once it was over.
+    // The last pause that was longer than kUsualPause of the gaps that were usual before.
     // Empty once the next pause shows that the topic has only become slow.
     struct Silence {
       Time since{};

@@ -123,8 +123,10 @@ WhyUnknown Monitor::why_unknown(SignalId signal, Time now) const {
 
 void Monitor::note_arrival(InputId id, Time at) {
   SignalStore::Arrivals arrivals = knowledge_.signals.arrivals(id);
-  if (arrivals.last != kLongAgo && arrivals.last >= awake_)
+  if (arrivals.last != kLongAgo && arrivals.last >= awake_) {
     arrivals.gap = usual_gap(arrivals.gap, at - arrivals.last);
+    arrivals.longest = std::max(arrivals.longest, at - arrivals.last);
+  }
   arrivals.last = at;
   arrivals.count = std::min(arrivals.count + 1, SignalStore::kRegular);
   write_.signals.set_arrivals(id, arrivals);

@@ -20,7 +20,7 @@ void note_silence(SignalStore::Rhythm& rhythm, Duration interval, Time at) {
     silence.reset();
   const Duration before = rhythm.gap;
   rhythm.gap = monitor::usual_gap(before, interval);
-  if (before > Duration::zero() && interval > kGaps * rhythm.gap)
+  if (before > Duration::zero() && interval > SignalStore::Rhythm::kUsualPause * before)
     silence = {*rhythm.last, at, before};
 }
 
@@ -224,7 +224,11 @@ void Monitor::on(Time at, const GoalsSeen& seen) {
     known.insert_or_assign(each.id, Goal{goal.began, each.status});
     if (is_new && goals.is_heard) count_goal(seen.topic, GoalStatus::kAccepted, at);
     const bool ends = is_over(each.status) && !is_over(goal.status);
-    if (ends && (!is_new || goals.is_heard)) count_goal(seen.topic, each.status, at);
+    if (!ends || (is_new && !goals.is_heard)) continue;
+    count_goal(seen.topic, each.status, at);
+    if (each.status == GoalStatus::kSucceeded) {
+      for (const InputId id : topics_[seen.topic.index].inputs) write_.signals.set_read_at(id, at);
+    }
   }
   goals.is_heard = true;
   goals.all = std::move(known);

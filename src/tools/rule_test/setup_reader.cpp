@@ -143,8 +143,15 @@ bool SetupReader::publishes(ComponentId id, const Name& name) {
     return read_.fail(Code::kBadRosName, name.span, "'" + name.text + "' is no full topic name",
                       "write " + topic, Edit{name.span, topic});
   const auto subject = names_.topic_or_signal(name);
-  if (subject) scenario_->origins.push_back({id, *subject});
-  return subject.has_value();
+  if (!subject) return false;
+  scenario_->origins.push_back({id, *subject});
+  // The topic of a signal is an edge of the graph, too.
+  const auto* signal = std::get_if<SignalId>(&*subject);
+  const auto* field =
+      signal != nullptr ? std::get_if<TopicField>(&rules_[*signal].source) : nullptr;
+  if (field != nullptr)
+    scenario_->endpoints.push_back({id, EndpointKind::kPublisher, rules_[field->topic].name});
+  return true;
 }
 
 bool SetupReader::needs(ComponentId consumer, const Name& name) {

@@ -18,11 +18,23 @@ using namespace diagnose;
 
 bool only_revives(const Strategy& strategy, const Knowledge& knowledge) {
   const std::vector<ComponentId> others = also_ended(strategy, knowledge);
-  return std::all_of(
-             strategy.components.begin(), strategy.components.end(),
-             [&](ComponentId c) { return is_known_down(c, knowledge) && replaces(strategy, c); }) &&
-         std::all_of(others.begin(), others.end(),
-                     [&](ComponentId c) { return is_known_down(c, knowledge); });
+  std::vector<ComponentId> revived;
+  std::ranges::copy_if(strategy.components, std::back_inserter(revived), [&](ComponentId c) {
+    return is_known_down(c, knowledge) && replaces(strategy, c);
+  });
+  const auto is_paused_for_it = [&](ComponentId c) {
+    const auto& upstream = knowledge.graph.upstream(c);
+    return std::ranges::any_of(
+               revived,
+               [&](ComponentId r) { return std::ranges::find(upstream, r) != upstream.end(); }) &&
+           std::ranges::all_of(strategy.adaptations, [&](const Adaptation& a) {
+             return a.component != c || a.type == AdaptationType::kDeactivate ||
+                    a.type == AdaptationType::kActivate;
+           });
+  };
+  return !revived.empty() && std::ranges::all_of(strategy.components, [&](ComponentId c) {
+    return std::ranges::find(revived, c) != revived.end() || is_paused_for_it(c);
+  }) && std::ranges::all_of(others, [&](ComponentId c) { return is_known_down(c, knowledge); });
 }
 
 namespace {

@@ -11,7 +11,7 @@
 
 namespace culprit::plan {
 
-// Does it do nothing but replace processes that are known to be down?
+// Does it do nothing but replace processes that are known to be down? It may pause what depends on them.
 bool only_revives(const Strategy& strategy, const Knowledge& knowledge);
 
 // Failures and causes are named by their nodes (diagnose::Causes).
