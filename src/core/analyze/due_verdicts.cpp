@@ -42,7 +42,7 @@ Time DueVerdicts::deadline(const Attempt& attempt) const {
   const Time given = std::max({later(attempt.effective, impact), shows_from(attempt),
                                knowledge_.signals.heard_again_by(id), hidden_until(attempt)});
   const Time deadline = later(given, knowledge_.signals.latency(id));
-  // What it started may have begun late to show what the rule reads.
+  // A component that it started may begin late to show what the rule reads.
   const bool may_be_late = std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
     return launches(a) && knowledge_.rules[a.component].ready > Duration::zero();
   });

@@ -123,7 +123,7 @@ bool is_trouble_left_to(RuleId i, const CauseNode& trouble, std::span<const Comp
   const ComponentState& state = knowledge.components[trouble.component];
   const auto is_recent = [&](Time at) { return knowledge.now < later(at, kLongestPlainEvidence); };
   if (state.is_coming_up() && is_recent(state.process_since)) return false;
-  // What is down obeys no restart.
+  // A component that is down obeys no restart.
   if (answers_nothing(trouble.trouble) && !is_replaced_by(i, trouble.component, knowledge.rules))
     return false;
   if (!is_recent(trouble.onset.latest)) return true;
@@ -289,7 +289,7 @@ void Causes::add_unsupplied(const Knowledge& knowledge) {
     for (const ComponentId c : touched_by(rule, knowledge)) {
       std::optional<ComponentId> lacking;
       if (is_unsupplied(c)) lacking = c;
-      // What was never seen may be missing anywhere upstream, and the graph does not show where.
+      // A component that was never seen may be missing anywhere upstream: the graph does not show where.
       if (!lacking && is_any_never_seen) lacking = knowledge.graph.first_upstream(c, is_unsupplied);
       if (!lacking) continue;
       nodes_.push_back({CauseNode::Kind::kUnsupplied,

@@ -153,7 +153,7 @@ std::vector<ComponentId> Questioner::suppliers(const Strategy& strategy) const {
   return all;
 }
 
-// What shows now may have begun after what the failure showed first was repaired.
+// The failure may show something that began after its first cause was repaired.
 Time Questioner::shows_since(RuleId failure) const {
   const Time onset = onset_of(failure, knowledge_).latest;
   return later(std::max(onset, knowledge_.states[failure].masked_until), kProvesHealth);

@@ -188,7 +188,7 @@ bool StormWatch::is_or_was_ill(ComponentId component, RuleId except) const {
   });
 }
 
-// Is it in a trouble that can explain the failure? What has worked beside it for long needs another cause.
+// Is it in a trouble that can explain the failure? A function that worked beside it for long failed for another cause.
 bool StormWatch::is_in_trouble(ComponentId component, RuleId failure,
                                const Suspects& suspects) const {
   const auto& trouble = suspects.troubles[component.index];

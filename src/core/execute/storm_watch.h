@@ -57,7 +57,7 @@ class StormWatch {
   std::optional<Storm> look(Time now);
   void look_for_dead();
   void look_for_failures(Time now);
-  // What looks bad although no rule about it has fired, by component.
+  // By component: does it look bad although no rule about it has fired?
   struct Suspects {
     std::vector<bool> rules;  // one may still fire
     std::vector<std::optional<diagnose::TroubleSeen>> troubles;

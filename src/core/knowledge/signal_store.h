@@ -56,8 +56,8 @@ class SignalStore {
   // When a signal was read last, or a goal of an action succeeded; kLongAgo for inputs that neither brings.
   Time read_at(InputId id) const { return read_at_[id.index]; }
   void set_read_at(InputId id, Time at) { read_at_[id.index] = at; }
-  // When values of a signal or a diagnostic come. `gap` is the usual pause between two. Of events that are counted
-  // (logs, goals) only `last` is known.
+  // When values of a signal or a diagnostic come. `gap` is the usual pause between two. Counted events (logs,
+  // goals) have `last` alone.
   struct Arrivals {
     Time last = kLongAgo;
     Duration gap{};
