@@ -28,19 +28,23 @@ void Detector::evaluate(RuleId id, Time now) {
   if (!detection.history.empty()) sample_history(detection, now);
 }
 
-// Signals of others, where the rule also reads one of its own components.
+// Diagnostics of others that are compared with constants, where the rule also reads one of its own components.
 std::vector<std::vector<Assumed>> Detector::guards_of(const RuleSet& rules) {
   std::vector<std::vector<Assumed>> all(rules.rules.size());
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     const Rule& rule = rules[RuleId(r)];
     bool reads_own = false;
     for (const InputId id : rule.inputs) {
-      if (rules[id].kind != Input::Kind::kSignal) continue;
-      const auto publisher = publisher_of(rules[id].signal, rules);
+      const Input& input = rules[id];
+      if (input.kind != Input::Kind::kSignal) continue;
+      const auto publisher = publisher_of(input.signal, rules);
       const bool is_own =
           publisher && std::ranges::find(rule.components, *publisher) != rule.components.end();
       reads_own |= is_own;
-      if (!is_own) all[r].push_back({id, Slot()});
+      const bool is_diagnostic = std::holds_alternative<DiagnosticKey>(rules[input.signal].source);
+      const bool is_number = input.type == Type::kInt || input.type == Type::kDouble;
+      const bool is_mode = !is_number || (input.only_compared && !input.thresholds.empty());
+      if (!is_own && is_diagnostic && is_mode) all[r].push_back({id, Slot()});
     }
     if (!reads_own) all[r].clear();
   }

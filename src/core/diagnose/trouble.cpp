@@ -47,19 +47,47 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>&
   return seen;
 }
 
-// The one that sends the values of the input, if they have stopped to come. They pause longer where they are sent on demand.
+std::optional<ComponentId> sender_of(SignalId signal, const Knowledge& knowledge) {
+  const auto* field = std::get_if<TopicField>(&knowledge.rules[signal].source);
+  return field != nullptr ? knowledge.graph.only_publisher(knowledge.rules[field->topic])
+                          : publisher_of(signal, knowledge.rules);
+}
+
+// Values that are sent on demand pause longer.
+bool has_stopped(InputId id, const Knowledge& knowledge) {
+  const SignalStore::Arrivals& arrivals = knowledge.signals.arrivals(id);
+  const Duration usual = std::max(5 * arrivals.gap, 2 * arrivals.longest);
+  return arrivals.count == SignalStore::kRegular && knowledge.now > later(arrivals.last, usual) &&
+         knowledge.signals.confirmed_by(id) == kLongAgo;
+}
+
+// Does anything else come from it that culprit watches?
+bool still_sends(ComponentId component, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  for (std::size_t t = 0; t < rules.topics.size(); ++t) {
+    const TopicId topic(t);
+    if (knowledge.signals.rhythm(topic).last && !is_silent(topic, knowledge.now, knowledge) &&
+        knowledge.graph.only_publisher(rules[topic]) == component)
+      return true;
+  }
+  for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
+    const InputId id(i);
+    if (rules[id].subject() == Input::Subject::kSignal && !has_stopped(id, knowledge) &&
+        sender_of(rules[id].signal, knowledge) == component)
+      return true;
+  }
+  return false;
+}
+
+// The one whose values the input has, if all that it sends has stopped.
 std::optional<ComponentId> silent_sender(InputId id, const Knowledge& knowledge) {
   const Input& input = knowledge.rules[id];
-  const SignalStore::Arrivals& arrivals = knowledge.signals.arrivals(id);
-  const bool is_regular = input.subject() == Input::Subject::kSignal &&
-                          arrivals.count == SignalStore::kRegular &&
-                          knowledge.signals.confirmed_by(id) == kLongAgo;
-  const Duration usual = std::max(5 * arrivals.gap, 2 * arrivals.longest);
-  if (!is_regular || knowledge.now <= later(arrivals.last, usual)) return std::nullopt;
+  if (input.subject() != Input::Subject::kSignal || !has_stopped(id, knowledge))
+    return std::nullopt;
   const auto* field = std::get_if<TopicField>(&knowledge.rules[input.signal].source);
-  if (field == nullptr) return publisher_of(input.signal, knowledge.rules);
-  if (may_be_lost(field->topic, knowledge.now, knowledge)) return std::nullopt;
-  return knowledge.graph.only_publisher(knowledge.rules[field->topic]);
+  if (field != nullptr && may_be_lost(field->topic, knowledge.now, knowledge)) return std::nullopt;
+  const auto sender = sender_of(input.signal, knowledge);
+  return sender && !still_sends(*sender, knowledge) ? sender : std::nullopt;
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ enum class Trouble : std::uint8_t {
   kNotActive,  // its lifecycle was active, and is not any more
   kNotYetActive,  // its lifecycle is known and was never active
   kNeverSeen,     // it was not seen yet
-  kSilent  // a topic that it alone publishes, at a steady rate, is silent, or a signal that it sends
+  kSilent  // a topic that it alone publishes, at a steady rate, is silent, or all of its signals are
 };
 
 // For people, after the component's name: "exited", "hangs".

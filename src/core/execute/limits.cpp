@@ -154,13 +154,13 @@ std::optional<Limits::Limit> Limits::backoff(ComponentId component, RuleId rule,
                knowledge_.rules[component].name + " was restarted a short while ago", until};
 }
 
-// How long its start may take, if nothing has come from it yet.
+// How long its start may take, if nothing has come yet of what came before it.
 Duration Limits::ready(ComponentId component) const {
   const ComponentState& state = knowledge_.components[component];
   const Duration most = knowledge_.rules[component].ready;
-  const bool is_starting = most > Duration::zero() && state.alive != false &&
-                           diagnose::published_last(knowledge_)[component.index] < state.node_seen;
-  return is_starting ? most : Duration::zero();
+  if (most == Duration::zero() || state.alive == false) return Duration::zero();
+  const Time last = diagnose::published_last(knowledge_)[component.index];
+  return last != kLongAgo && last < state.node_seen ? most : Duration::zero();
 }
 
 std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) const {
