@@ -336,10 +336,12 @@ TEST_F(Composed, ANodeThatOnlyOffersTheServicesOfAContainerIsNotBelieved) {
       });
   ASSERT_TRUE(unload) << unload.error();
   std::thread thread([&] { executor.run(); });
-  const auto culprit = run(rules("") + kWeak, {"--quiet", "10s"});
+  const auto culprit = run(rules("") + kWeak, {"--approve"});
   ASSERT_TRUE(culprit.prints("DetectorWeak detected")) << culprit.output();
   std::filesystem::rename(world.write("seconds", "300"), stalls);  // only the forger answers
   ASSERT_TRUE(comes([&] { return !std::filesystem::exists(stalls); }));
+  TestProgram order(world, {"culprit", "run-strategy", "detector_redeploy", "--domain", domain()});
+  order.wait();
   EXPECT_TRUE(culprit.prints("another process answers for the container /box")) << culprit.output();
   EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
   EXPECT_EQ(asked, 0);

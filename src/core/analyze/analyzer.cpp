@@ -281,7 +281,7 @@ void Analyzer::judge(RuleId id, Time now) {
         couplings_.is_echo(attempt) ||
         (!state.standing.empty() && attempt.effective <= state.search.last_resort_at);
   }
-  attempt.is_ambiguous |= verdicts_.is_without_supplier(attempt);
+
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
   attempt.deadline = verdicts_.deadline(attempt);
   switch (verdicts_.verdict(attempt, now)) {

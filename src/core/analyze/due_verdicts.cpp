@@ -5,10 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "diagnose/awaited.h"
 #include "diagnose/timing.h"
-#include "diagnose/touched.h"
-#include "diagnose/trouble.h"
 #include "knowledge/group_health.h"
 
 namespace culprit {
@@ -40,7 +37,7 @@ Time DueVerdicts::deadline(const Attempt& attempt) const {
   const Duration impact =
       std::max(duration_of(strategy.impact, knowledge_.rules), knowledge_.latencies.patience(id));
   const Time given = std::max({later(attempt.effective, impact), shows_from(attempt),
-                               knowledge_.signals.heard_again_by(id), hidden_until(attempt)});
+                               knowledge_.signals.heard_again_by(id)});
   const Time deadline = later(given, knowledge_.signals.latency(id));
   // A component that it started may begin late to show what the rule reads.
   const bool may_be_late = std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
@@ -110,33 +107,6 @@ bool DueVerdicts::is_left_down(GroupId group, const Attempt& attempt, Time now) 
   const GroupHealth health = health_of(knowledge_.rules[group], knowledge_.components, now);
   if (health == GroupHealth::kChanging) return false;
   return health != GroupHealth::kUnknown || now >= later(attempt.deadline, kLostAfter);
-}
-
-bool DueVerdicts::is_without_supplier(const Attempt& attempt) const {
-  return hidden_until(attempt) > knowledge_.now;
-}
-
-// For one that nobody brings back the planner waits.
-Time DueVerdicts::hidden_until(const Attempt& attempt) const {
-  const Strategy& strategy = knowledge_.rules[attempt.strategy];
-  const RuleId id = strategy.rule;
-  const Duration passing = duration_of(diagnose::kPassing, knowledge_.rules);
-  const Time began = diagnose::onset_of(id, knowledge_).latest;
-  Time until = kLongAgo;
-  for (const ComponentId c :
-       knowledge_.graph.upstream(diagnose::downstream_of_causes(id, knowledge_))) {
-    if (std::ranges::find(strategy.components, c) != strategy.components.end()) continue;
-    const auto trouble = diagnose::trouble_of(c, knowledge_);
-    const auto& past = knowledge_.components[c].past_trouble;
-    if (trouble) {
-      const Time longest = later(trouble->onset.earliest, kInputs);
-      if (trouble->onset.earliest > began && knowledge_.now < longest)
-        until = std::max(until, later(knowledge_.now, knowledge_.rules.cycle));
-    } else if (past && past->since > began && past->over >= attempt.chosen) {
-      until = std::max(until, diagnose::echo_ends(id, {}, past->over, passing, knowledge_));
-    }
-  }
-  return until;
 }
 
 // A started component has to make the publishers that it had, for which it may open a device first.

@@ -7,8 +7,7 @@
 // of the publishers that the component reads, and of its subscribers (kInputs at most).
 //
 //   kNotYet    before the deadline; while its failure clears; while it is unknown whether the
-//              failure is there (kLostAfter at most); while a more critical strategy has its components;
-//              while a supplier is in trouble that began after the failure, and until that shows no more
+//              failure is there (kLostAfter at most); while a more critical strategy has its components
 //   kSucceeds  the failure has cleared, and the group is active that the strategy is about; with
 //              ON_CHANGE as soon as the adaptations took effect
 //   kFails     all else
@@ -29,7 +28,7 @@ class DueVerdicts {
   // A failing rule whose trigger is unknown for longer is no longer called failing: whether it is
   // cannot be known.
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
-  // The longest time that a verdict on a started component waits for its inputs, or on any for a supplier.
+  // The longest time that a verdict on a started component waits for its inputs.
   static constexpr Duration kInputs = std::chrono::seconds(14);
 
   enum class Verdict : std::uint8_t { kNotYet, kSucceeds, kFails };
@@ -50,8 +49,6 @@ class DueVerdicts {
   std::optional<GroupId> missing_group(RuleId id, Time now) const;
   // Does nobody else reserve the components of a suspended attempt any more?
   bool has_components_back(const Attempt& attempt) const;
-  // Is a supplier in trouble that began after the failure? Whether the strategy helped cannot be seen.
-  bool is_without_supplier(const Attempt& attempt) const;
   // Was the failure gone before the attempt had changed anything?
   bool went_away_before(const Attempt& attempt) const;
   // The component on an unreachable computer that the attempt adapts, or that explains its failure.
@@ -63,8 +60,6 @@ class DueVerdicts {
   bool is_about_whole_group(StrategyId strategy) const;
   // The group stays as it is, and that is not active: no member is changing.
   bool is_left_down(GroupId group, const Attempt& attempt, Time now) const;
-  // Until when a trouble of a supplier that began after the failure hides the effect, as far as is known now.
-  Time hidden_until(const Attempt& attempt) const;
   // Its effect cannot be seen before.
   Time shows_from(const Attempt& attempt) const;
   bool is_silent_since_its_start(ComponentId component, RuleId rule) const;
