@@ -81,8 +81,11 @@ void planning_step(benchmark::State& state) {
   Knowledge knowledge(rules);
   connect(knowledge, components, 5);
   knowledge.now = Time(std::chrono::seconds(100));
-  for (std::size_t r = 0; r < components; ++r)
-    knowledge.states.state(RuleId(r)).detection.trigger = Slot::of(false);
+  for (std::size_t r = 0; r < components; ++r) {
+    Detection& detection = knowledge.states.state(RuleId(r)).detection;
+    detection.trigger = Slot::of(false);
+    detection.last_false = knowledge.now;
+  }
   std::vector<RuleId> failures;
   for (std::size_t f = 0; f < failing; ++f) {
     failures.emplace_back(f * components / failing);

@@ -104,6 +104,7 @@ void Analyzer::look_at(RuleId id, Time now) {
   last_resorts_.judge(id, now);
   switch (knowledge_.states[id].phase) {
     case RulePhase::kQuiet:
+      prove_gone(id, now);
       if (detector_.detects(id, now)) detect(id, now);
       break;
     case RulePhase::kFailing:
@@ -144,12 +145,14 @@ bool Analyzer::is_gone(RuleId id, Time now) const {
 
 void Analyzer::detect(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
-  const bool was_repaired = std::exchange(state.was_repaired, false);
+  const bool was_repaired = state.repaired != kLongAgo && state.repaired == state.gone_since;
   const Duration soon = was_repaired ? kOutlasts : kRecurs;
   const bool recurs = state.gone_since != kLongAgo && now < later(state.gone_since, soon);
   // A rule with ON_CHANGE acts on each edge.
-  const bool is_same = state.search.times > 0 && !is_proven(state.gone_since, now) &&
-                       !knowledge_.rules[id].policies.on_change;
+  const bool may_be_there = state.is_unproven || !is_proven(state.gone_since, now);
+  const bool is_same =
+      state.search.times > 0 && may_be_there && !knowledge_.rules[id].policies.on_change;
+  state.is_unproven = false;
   left_off_.detected(id, now);
   // An earlier process detected it.
   const bool is_left_off = state.left_off.has_value();
@@ -173,6 +176,7 @@ void Analyzer::detect(RuleId id, Time now) {
   }
   state.onset = diagnose::onset_now(id, now, knowledge_);
   state.masked_until = masked_until(id);
+  state.unhelped_at = kLongAgo;
   if (!recurs) {
     state.first_onset = state.onset->latest;
     state.worked_until = state.detection.last_false;
@@ -221,6 +225,21 @@ void Analyzer::note_ready(RuleId id, const Attempt& attempt) {
   }
 }
 
+// Does it stay there although it can no longer be evaluated? A last resort holds until the failure is gone, and a person was
+// told of one at which nothing helped.
+bool Analyzer::is_held(RuleId id) const {
+  const RuleState& state = knowledge_.states[id];
+  return state.phase == RulePhase::kExhausted || !state.standing.empty();
+}
+
+// One that became unknown is known to be gone since now.
+void Analyzer::prove_gone(RuleId id, Time now) {
+  RuleState& state = write_.states.state(id);
+  if (!state.is_unproven || !is_gone(id, now)) return;
+  state.is_unproven = false;
+  state.gone_since = now;
+}
+
 void Analyzer::watch_failing(RuleId id, Time now) {
   const RuleState& state = knowledge_.states[id];
   if (is_gone(id, now)) {
@@ -236,9 +255,10 @@ void Analyzer::watch_failing(RuleId id, Time now) {
       note_transient(id);
       resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
     }
-  } else if (!state.detection.trigger.known &&
+  } else if (!state.detection.trigger.known && !is_held(id) &&
              now >= later(state.detection.trigger_since, DueVerdicts::kLostAfter)) {
     leave(id, now);
+    write_.states.state(id).is_unproven = true;
     write_.events.tell(now, FailureLost{id});
   }
 }
@@ -283,6 +303,7 @@ void Analyzer::judge(RuleId id, Time now) {
   }
 
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
+  if (attempt.spoke == kNever && verdicts_.has_spoken(attempt)) attempt.spoke = now;
   attempt.deadline = verdicts_.deadline(attempt);
   switch (verdicts_.verdict(attempt, now)) {
     case DueVerdicts::Verdict::kNotYet:
@@ -429,13 +450,11 @@ void Analyzer::excuse(RuleId id, ComponentId unheard, Time now) {
                                                                   knowledge_.why_unheard(unheard)});
 }
 
-// A start that cannot happen is no attempt: the strategy is begun again once it can.
-void Analyzer::excuse_barred(RuleId id, ComponentId barred, Time now) {
+// It was no attempt.
+void Analyzer::excuse(RuleId id, std::string why, Time now) {
   Attempt& attempt = *write_.states.state(id).attempt;
   attempt.stage = Attempt::Stage::kUndoing;
-  write_.events.tell(now, StrategyAbandoned{attempt.strategy,
-                                            knowledge_.rules[barred].name + " cannot be started: " +
-                                                knowledge_.components[barred].start_missing});
+  write_.events.tell(now, StrategyAbandoned{attempt.strategy, std::move(why)});
 }
 
 void Analyzer::forgive_unheard(Time now) {
@@ -462,18 +481,14 @@ void Analyzer::forgive_unheard(Time now) {
 void Analyzer::fail(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   Attempt& attempt = *state.attempt;
-  if (const auto unheard =
-          attempt.has_no_failure ? std::nullopt : verdicts_.unheard_behind(attempt))
-    return excuse(id, *unheard, now);
-  if (const auto barred = attempt.has_no_failure ? std::nullopt : verdicts_.barred_behind(attempt))
-    return excuse_barred(id, *barred, now);
   if (!attempt.has_no_failure) {
+    if (const auto unheard = verdicts_.unheard_behind(attempt)) return excuse(id, *unheard, now);
+    if (auto why = verdicts_.why_no_attempt(attempt)) return excuse(id, std::move(*why), now);
     write_.states.set_tried(attempt.strategy, true);
     ++state.search.attempts;
     if (!verdicts_.went_away_before(attempt)) outcomes_.judged(attempt, false, now);
     state.tried_alone.reset();
-    // It may have helped, and what shows now have a cause that began meanwhile.
-    if (attempt.effective != kNever) state.masked_until = now;
+    if (attempt.effective != kNever) state.unhelped_at = now;
     if (!attempt.is_ambiguous && attempt.effective != kNever) {
       state.tried_alone = {attempt.strategy, attempt.effective};
       write_.latencies.stays(id, now - attempt.effective);
@@ -494,7 +509,7 @@ void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
   RuleState& state = write_.states.state(id);
   how.reaction = now - state.failing_since;
   state.quiet_until = later(now, knowledge_.rules[id].policies.cooldown);
-  state.was_repaired = how.strategy.has_value();
+  if (how.strategy) state.repaired = now;
   leave(id, now);
   if (!how.strategy && state.search.attempts == state.search.attempts_before)
     couplings_.cleared(id, now);

@@ -142,7 +142,9 @@ class Analyzer {
   void end_attempt(RuleId id, Time now);
   void succeed(RuleId id, Time now);
   void fail(RuleId id, Time now);
-  void excuse_barred(RuleId id, ComponentId barred, Time now);
+  void excuse(RuleId id, std::string why, Time now);
+  bool is_held(RuleId id) const;
+  void prove_gone(RuleId id, Time now);
   void excuse(RuleId id, ComponentId unheard, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);
   void exhaust_if_spent(RuleId id, Time now);

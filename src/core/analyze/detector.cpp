@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "diagnose/timing.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -18,64 +17,20 @@ Duration longest_detection(const RuleSet& rules) {
 void Detector::evaluate(RuleId id, Time now) {
   Detection& detection = states_.state(id).detection;
   const Slot is = value(id, now);
-  if (is_false(is) || is_false(detection.trigger))
-    detection.last_false = std::max(detection.last_false, worked_until(id, now));
+  if (is_false(is)) {
+    const Time worked = seen_working_.until(id, now);
+    detection.works = worked == now;
+    detection.last_false = std::max(detection.last_false, worked);
+  } else if (detection.works) {  // until now, whatever its inputs show now
+    detection.works = false;
+    detection.last_false = now;
+  }
   if (!same(is, detection.trigger, Type::kBool) || detection.trigger_since == kLongAgo) {
     detection.trigger = is;
     detection.trigger_since = now;
   }
   if (!is_true(is)) detection.armed = true;
   if (!detection.history.empty()) sample_history(detection, now);
-}
-
-// Diagnostics of others that are compared with constants, where the rule also reads one of its own components.
-std::vector<std::vector<Assumed>> Detector::guards_of(const RuleSet& rules) {
-  std::vector<std::vector<Assumed>> all(rules.rules.size());
-  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
-    const Rule& rule = rules[RuleId(r)];
-    bool reads_own = false;
-    for (const InputId id : rule.inputs) {
-      const Input& input = rules[id];
-      if (input.kind != Input::Kind::kSignal) continue;
-      const auto publisher = publisher_of(input.signal, rules);
-      const bool is_own =
-          publisher && std::ranges::find(rule.components, *publisher) != rule.components.end();
-      reads_own |= is_own;
-      const bool is_diagnostic = std::holds_alternative<DiagnosticKey>(rules[input.signal].source);
-      const bool is_number = input.type == Type::kInt || input.type == Type::kDouble;
-      const bool is_mode = !is_number || (input.only_compared && !input.thresholds.empty());
-      if (!is_own && is_diagnostic && is_mode) all[r].push_back({id, Slot()});
-    }
-    if (!reads_own) all[r].clear();
-  }
-  return all;
-}
-
-// Until when its trigger, which is false, shows that the function worked. A topic that never came is not older than its limit
-// at first; a component that is not active has nothing to do; no goal is aborted while none runs; and in another mode the rule
-// would not fire. kLongAgo: it shows nothing.
-Time Detector::worked_until(RuleId id, Time now) const {
-  const Rule& rule = knowledge_.rules[id];
-  const bool is_guarded =
-      !guards_[id.index].empty() &&
-      !is_false(culprit::evaluate(rule.trigger, knowledge_.signals.slots(), guards_[id.index]));
-  if (is_guarded) return kLongAgo;
-  Time until = now;
-  for (const InputId input : rule.inputs) {
-    const Input& read = knowledge_.rules[input];
-    if (diagnose::watches_a_topic(read) && !knowledge_.signals.rhythm(read.topic).last)
-      return kLongAgo;
-    if (diagnose::is_over_window(read)) until = std::min(until, now - read.window);
-    if (read.kind == Input::Kind::kGoals || read.kind == Input::Kind::kGoalAge)
-      until = std::min(until, knowledge_.signals.read_at(input));
-    if (read.kind != Input::Kind::kLifecycle) continue;
-    const Lifecycle state = knowledge_.components[read.component].lifecycle;
-    const bool is_at_work = state == Lifecycle::kUnknown ||
-                            (state == Lifecycle::kActive &&
-                             knowledge_.components[read.component].lifecycle_since < now);
-    if (!is_at_work) return kLongAgo;
-  }
-  return until;
 }
 
 Slot Detector::value(RuleId id, Time now) {
@@ -104,6 +59,7 @@ void Detector::sample_history(Detection& detection, Time now) const {
 void Detector::restart(RuleId id, Time now) {
   Detection& detection = states_.state(id).detection;
   if (detection.trigger_since != kLongAgo) detection.trigger_since = now;
+  detection.works = false;
   detection.history.assign(detection.history.size(), false);
   detection.true_in_history = 0;
 }

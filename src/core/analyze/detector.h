@@ -5,11 +5,8 @@
 // unknown neither holds nor is false.
 #pragma once
 
-#include <vector>
-
 #include "analyze/known_silence.h"
-#include "knowledge/knowledge.h"
-#include "language/evaluate.h"
+#include "analyze/seen_working.h"
 
 namespace culprit {
 
@@ -26,7 +23,7 @@ class Detector {
       : knowledge_(knowledge),
         states_(states),
         known_silence_(knowledge),
-        guards_(guards_of(knowledge.rules)) {}
+        seen_working_(knowledge) {}
 
   // Evaluates the rule's trigger.
   void evaluate(RuleId id, Time now);
@@ -45,16 +42,13 @@ class Detector {
 
  private:
   Slot value(RuleId id, Time now);
-  static std::vector<std::vector<Assumed>> guards_of(const RuleSet& rules);
-  Time worked_until(RuleId id, Time now) const;
   void sample_history(Detection& detection, Time now) const;
   Duration clearing_time(RuleId id) const;
 
   const Knowledge& knowledge_;
   RuleStates& states_;
   KnownSilence known_silence_;
-  // By rule: inputs that say nothing of what it is about, such as a mode, as if they were unknown.
-  std::vector<std::vector<Assumed>> guards_;
+  SeenWorking seen_working_;
 };
 
 }  // namespace culprit

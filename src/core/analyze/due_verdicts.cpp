@@ -36,15 +36,21 @@ Time DueVerdicts::deadline(const Attempt& attempt) const {
   const RuleId id = strategy.rule;
   const Duration impact =
       std::max(duration_of(strategy.impact, knowledge_.rules), knowledge_.latencies.patience(id));
-  const Time given = std::max({later(attempt.effective, impact), shows_from(attempt),
-                               knowledge_.signals.heard_again_by(id)});
-  const Time deadline = later(given, knowledge_.signals.latency(id));
   // A component that it started may begin late to show what the rule reads.
   const bool may_be_late = std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
     return launches(a) && knowledge_.rules[a.component].ready > Duration::zero();
   });
-  return may_be_late && attempt.deadline != kNever ? std::max(attempt.deadline, deadline)
-                                                   : deadline;
+  const Time spoke = may_be_late && attempt.spoke != kNever ? attempt.spoke : kLongAgo;
+  const Time given = std::max({later(attempt.effective, impact), shows_from(attempt), spoke,
+                               knowledge_.signals.heard_again_by(id)});
+  return later(given, knowledge_.signals.latency(id));
+}
+
+bool DueVerdicts::has_spoken(const Attempt& attempt) const {
+  const Strategy& strategy = knowledge_.rules[attempt.strategy];
+  return std::ranges::none_of(strategy.adaptations, [&](const Adaptation& a) {
+    return launches(a) && is_silent_since_its_start(a.component, strategy.rule);
+  });
 }
 
 DueVerdicts::Verdict DueVerdicts::verdict(const Attempt& attempt, Time now) const {
@@ -193,12 +199,16 @@ std::optional<ComponentId> DueVerdicts::unheard_behind(const Attempt& attempt) c
                                           : knowledge_.unheard_behind(strategy.rule);
 }
 
-std::optional<ComponentId> DueVerdicts::barred_behind(const Attempt& attempt) const {
-  if (attempt.obstacle.empty()) return std::nullopt;
+std::optional<std::string> DueVerdicts::why_no_attempt(const Attempt& attempt) const {
   for (const Adaptation& adaptation : knowledge_.rules[attempt.strategy].adaptations) {
-    const bool starts = launches(adaptation);
-    if (starts && !knowledge_.components[adaptation.component].start_missing.empty())
-      return adaptation.component;
+    if (!launches(adaptation)) continue;
+    const std::string& name = knowledge_.rules[adaptation.component].name;
+    const ComponentState& state = knowledge_.components[adaptation.component];
+    if (!attempt.obstacle.empty() && !state.start_missing.empty())
+      return name + " cannot be started: " + state.start_missing;
+    const Time failed = knowledge_.states[knowledge_.rules[attempt.strategy].rule].failing_since;
+    if (attempt.obstacle.empty() && state.is_inactive_since(failed))
+      return name + " is there again, and inactive as before";
   }
   return std::nullopt;
 }

@@ -40,6 +40,8 @@ class DueVerdicts {
   // The deadline of an attempt whose adaptations took effect. It moves when it becomes known how long a signal
   // takes to show a change.
   Time deadline(const Attempt& attempt) const;
+  // Has something come of all that it started, as far as the rule reads that?
+  bool has_spoken(const Attempt& attempt) const;
   // @pre its deadline is set
   Verdict verdict(const Attempt& attempt, Time now) const;
   // When it may become another one although nothing that the rule reads changes; kNever: not at all.
@@ -53,8 +55,8 @@ class DueVerdicts {
   bool went_away_before(const Attempt& attempt) const;
   // The component on an unreachable computer that the attempt adapts, or that explains its failure.
   std::optional<ComponentId> unheard_behind(const Attempt& attempt) const;
-  // The component that the attempt could not start, since something that its start needs is missing.
-  std::optional<ComponentId> barred_behind(const Attempt& attempt) const;
+  // Something that a start needs is missing; or what it has started is inactive, as it was before.
+  std::optional<std::string> why_no_attempt(const Attempt& attempt) const;
 
  private:
   bool is_about_whole_group(StrategyId strategy) const;

@@ -127,10 +127,9 @@ TEST(DueVerdicts, ExcuseAStartThatCannotHappen) {
   Awaited w("", "redeploy");
   const ComponentId started(std::size_t{1});
   w.attempt.obstacle = "its program is not there";
-  EXPECT_FALSE(w.verdicts.barred_behind(w.attempt));
+  EXPECT_EQ(w.verdicts.why_no_attempt(w.attempt), std::nullopt);
   w.knowledge.components[started].start_missing = "the program b";
-  ASSERT_TRUE(w.verdicts.barred_behind(w.attempt));
-  EXPECT_EQ(*w.verdicts.barred_behind(w.attempt), started);
+  EXPECT_EQ(w.verdicts.why_no_attempt(w.attempt), "b cannot be started: the program b");
 }
 
 }  // namespace

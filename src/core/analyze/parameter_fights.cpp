@@ -1,5 +1,7 @@
 #include "analyze/parameter_fights.h"
 
+#include <algorithm>
+
 namespace culprit {
 
 ParameterFights::ParameterFights(const Knowledge& knowledge, RuleStates& states)
@@ -29,8 +31,22 @@ void ParameterFights::detected(RuleId rule, Time now) {
       if (!setters.last || setters.before != own || now >= later(setters.since, kSoon)) continue;
       const RuleId other = rules[*setters.last].rule;
       if (rules[other].policies.criticality < rules[rule].policies.criticality)
-        states_.bar(*setters.last, {own, now});
+        bar_others(own, adaptation.parameter, now);
     }
+  }
+}
+
+// All less critical strategies that set the parameter: a third one would pull it, too.
+void ParameterFights::bar_others(StrategyId own, ParameterId parameter, Time now) {
+  const RuleSet& rules = knowledge_.rules;
+  const Criticality level = rules[rules[own].rule].policies.criticality;
+  for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
+    const Strategy& other = rules[StrategyId(s)];
+    const bool sets_it = std::ranges::any_of(other.adaptations, [&](const Adaptation& a) {
+      return syntax::names_parameter(a.type) && a.parameter == parameter;
+    });
+    if (sets_it && !other.is_last_resort && rules[other.rule].policies.criticality < level)
+      states_.bar(StrategyId(s), {own, now});
   }
 }
 

@@ -1,8 +1,8 @@
 // Two rules that pull one parameter to and fro.
 //
 // A strategy sets a parameter and resolves its failure; a strategy of a less critical rule then sets
-// the same parameter; the failure is back within kSoon. Two such turns are evidence enough: from then on the
-// less critical strategy is barred, and the more critical rule's value stays, until the parameter's process
+// the same parameter; the failure is back within kSoon. Two such turns are evidence enough: from then on
+// all less critical strategies that set it are barred, and the more critical rule's value stays, until the parameter's process
 // begins anew (plan/validity.h). A last resort proves nothing: it is meant to be taken back, and its failure may come again for its own reasons.
 #pragma once
 
@@ -27,6 +27,8 @@ class ParameterFights {
   void detected(RuleId rule, Time now);
 
  private:
+  void bar_others(StrategyId own, ParameterId parameter, Time now);
+
   struct Setters {
     std::optional<StrategyId> last;
     std::optional<StrategyId> before;  // another one

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "diagnose/lost.h"
+#include "diagnose/senders.h"
 #include "diagnose/trouble.h"
 
 namespace culprit {
-
 void TroubleWatch::look(Time now, bool is_any_failing) {
   if (!is_any_failing) {
     open_.clear();
@@ -21,6 +22,7 @@ void TroubleWatch::look(Time now, bool is_any_failing) {
     const auto& trouble = troubles[each.component.index];
     const bool is_over = !trouble;
     if (trouble && !trouble->topic) each.topic.reset();  // its process was replaced, say
+    if (trouble) each.is_of_values &= trouble->is_of_values();
     // The state of a component on an unreachable computer is not known.
     if (is_over && !knowledge_.is_unheard(each.component)) close(each, now);
     return is_over;
@@ -28,7 +30,8 @@ void TroubleWatch::look(Time now, bool is_any_failing) {
   for (std::size_t c = 0; c < troubles.size(); ++c) {
     const bool is_open = std::ranges::find(open_, ComponentId(c), &Open::component) != open_.end();
     if (troubles[c] && !is_open)
-      open_.push_back({ComponentId(c), troubles[c]->onset.earliest, troubles[c]->topic});
+      open_.push_back({ComponentId(c), troubles[c]->onset.earliest, troubles[c]->topic,
+                       troubles[c]->is_of_values()});
   }
 }
 
@@ -36,18 +39,24 @@ void TroubleWatch::look(Time now, bool is_any_failing) {
 void TroubleWatch::note_silences_before(Time now) {
   for (std::size_t t = 0; t < knowledge_.rules.topics.size(); ++t) {
     const TopicId topic(t);
-    const auto& silence = knowledge_.signals.rhythm(topic).silence;
-    if (!silence || later(silence->over, diagnose::kLongestEvidence) < now) continue;
+    const SignalStore::Rhythm& rhythm = knowledge_.signals.rhythm(topic);
+    const auto& silence = rhythm.silence;
+    if (!silence || later(silence->over, diagnose::kLongestEvidence) < now || !rhythm.is_steady() ||
+        diagnose::may_be_lost(topic, now, knowledge_))
+      continue;
     const auto component = knowledge_.graph.only_publisher(knowledge_.rules[topic]);
     if (!component) continue;
     auto& past = components_[*component].past_trouble;
     if (past && past->over >= silence->over) continue;
-    over_.push_back({*component, silence->since, topic});
+    over_.push_back({*component, silence->since, topic, false});
     past = PastTrouble{silence->since, silence->over};
   }
 }
 
 void TroubleWatch::close(const Open& trouble, Time now) {
+  // It answered: it had nothing to tell.
+  if (trouble.is_of_values && diagnose::sent_last(trouble.component, knowledge_) <= trouble.since)
+    return;
   if (trouble.topic) {
     if (!is_over(trouble)) return;
     over_.push_back(trouble);

@@ -28,6 +28,7 @@ class TroubleWatch {
     ComponentId component;
     Time since{};
     std::optional<TopicId> topic;  // of a silence
+    bool is_of_values = false;     // TroubleSeen::is_of_values() ever since
   };
 
   void note_silences_before(Time now);

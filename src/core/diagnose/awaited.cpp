@@ -92,7 +92,9 @@ Awaited::Awaited(const Knowledge& knowledge, std::span<const RuleId> failures)
            later(knowledge.states[rule].failing_since, kLongestEvidence + kLongestPlainEvidence);
   });
   find_past(longest_echo(failures, knowledge));
-  if (!is_any_new && past_.empty()) return;
+  const bool looks_any_back = std::ranges::any_of(
+      failures, [&](RuleId failure) { return knowledge.now < looks_back_until(failure); });
+  if (!is_any_new && past_.empty() && !looks_any_back) return;
   Time latest = kLongAgo;
   for (const RuleId failure : failures)
     latest = std::max(latest, onset_of(failure, knowledge).latest);
@@ -228,6 +230,15 @@ Awaiting Awaited::of_learned_supplier(RuleId failure) const {
   return found;
 }
 
+// A window that still holds what a strategy has repaired comes and goes at its limit.
+Time Awaited::looks_back_until(RuleId failure) const {
+  const RuleState& state = knowledge_.states[failure];
+  const bool has_window = remembers(failure, knowledge_.rules) > Duration::zero();
+  if (state.repaired == kLongAgo || !has_window || state.repaired <= state.unhelped_at)
+    return kLongAgo;
+  return echo_ends(failure, {}, state.repaired, Duration::zero(), knowledge_);
+}
+
 Awaiting Awaited::awaiting(RuleId failure) const {
   const RuleState& state = knowledge_.states[failure];
   const Time onset = onset_of(failure, knowledge_).latest;
@@ -266,11 +277,16 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     for_each(upstream_past_[*scc], [&](std::size_t p) { fade(past_[p], passing); });
     for_each(own_past_[*scc], [&](std::size_t p) {
       const bool is_its_own = past_[p].component == c;
+      const bool was_judged = is_its_own && past_[p].over <= state.unhelped_at;
+      if (was_judged) return;  // the verdict has waited for its echo
       if (is_its_own || is_circle_[*scc]) fade(past_[p], is_its_own ? Duration{} : passing);
     });
   }
   const Awaiting learned = of_learned_supplier(failure);
-  return learned.until > found.until ? learned : found;
+  if (learned.until > found.until) found = learned;
+  const Time looks_back = looks_back_until(failure);
+  if (looks_back > found.until) found = {looks_back, failure, true, {}};
+  return found;
 }
 
 Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {

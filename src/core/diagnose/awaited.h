@@ -108,6 +108,7 @@ class Awaited {
   };
   // Until when the failure, to which it takes `passing`, may be the echo of that; kLongAgo: it is none.
   Time fades(RuleId failure, const Past& past, Duration passing) const;
+  Time looks_back_until(RuleId failure) const;
 
   const Knowledge& knowledge_;
   std::vector<Place> places_;  // by SCC; empty: nothing can be awaited

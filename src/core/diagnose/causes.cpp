@@ -8,6 +8,7 @@
 #include "diagnose/awaited.h"
 #include "diagnose/imminent.h"
 #include "diagnose/known_down.h"
+#include "diagnose/senders.h"
 #include "diagnose/touched.h"
 #include "diagnose/unclear.h"
 
@@ -114,6 +115,14 @@ bool is_left_to(RuleId j, std::span<const ComponentId> mended, const Knowledge& 
          });
 }
 
+// Is rule j, which its COOLDOWN holds back, about what i is about, too (`touched`)? Then i repairs it.
+bool is_same_in_cooldown(RuleId j, std::span<const ComponentId> touched,
+                         const Knowledge& knowledge) {
+  return is_held_by_cooldown(j, knowledge) &&
+         std::ranges::any_of(touched_by(j, knowledge),
+                             [&](ComponentId c) { return contains(touched, c); });
+}
+
 // Is it left to rule i to mend the component in trouble, with all that it mends (`mended`)? Not if culprit never saw the
 // component, which it does not start then; and for a while not if that is being started, or another rule may yet mend it:
 // one that has not fired for so long does not see the trouble.
@@ -155,7 +164,8 @@ void begin_with_its_process(CauseNode& failure,
     const auto& seen = troubles[c.index];
     const bool is_proof =
         seen && (seen->trouble == Trouble::kExited || seen->trouble == Trouble::kStopped ||
-                 seen->trouble == Trouble::kNotActive);
+                 seen->trouble == Trouble::kHung || seen->trouble == Trouble::kNotActive ||
+                 seen->trouble == Trouble::kSilent);
     if (!is_proof) continue;
     failure.onset.earliest = std::min(failure.onset.earliest, seen->onset.earliest);
     failure.troubled_since = std::min(failure.troubled_since, troubled_since(c, *seen, knowledge));
@@ -289,8 +299,13 @@ void Causes::add_unsupplied(const Knowledge& knowledge) {
     for (const ComponentId c : touched_by(rule, knowledge)) {
       std::optional<ComponentId> lacking;
       if (is_unsupplied(c)) lacking = c;
-      // A component that was never seen may be missing anywhere upstream: the graph does not show where.
-      if (!lacking && is_any_never_seen) lacking = knowledge.graph.first_upstream(c, is_unsupplied);
+      // A component that was never seen may be missing anywhere upstream: the graph does not show where. What publishes all
+      // the same does not need that input.
+      if (!lacking && is_any_never_seen) {
+        lacking = knowledge.graph.first_upstream(c, [&](ComponentId supplier) {
+          return is_unsupplied(supplier) && !is_publishing(supplier, knowledge);
+        });
+      }
       if (!lacking) continue;
       nodes_.push_back({CauseNode::Kind::kUnsupplied,
                         rule,
@@ -335,7 +350,8 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
       const bool is_own = is_trouble
                               ? contains(touched, nodes_[j].component) ||
                                     is_trouble_left_to(nodes_[i].rule, nodes_[j], mended, knowledge)
-                              : is_left_to(nodes_[j].rule, mended, knowledge);
+                              : is_left_to(nodes_[j].rule, mended, knowledge) ||
+                                    is_same_in_cooldown(nodes_[j].rule, touched, knowledge);
       const bool is_possible =
           is_trouble
               ? !is_own && can_explain(j, i, knowledge) && !may_be_effect(j, i, reach, knowledge)
@@ -405,27 +421,18 @@ bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledg
   if (is_of_state &&
       (is_container(nodes_[j].component, knowledge.rules) || is_about_states(rule, knowledge)))
     return false;
-  switch (nodes_[j].trouble) {
-    case Trouble::kNeverSeen:
-    case Trouble::kNotYetActive:
-      return never_worked(rule, knowledge);
-    case Trouble::kExited:
-    case Trouble::kStopped:
-    case Trouble::kLeft:
-    case Trouble::kStarting:
-    case Trouble::kHung:
-    case Trouble::kNotActive:
-    case Trouble::kSilent:
-      break;
-  }
+  const bool was_never_there =
+      nodes_[j].trouble == Trouble::kNeverSeen || nodes_[j].trouble == Trouble::kNotYetActive;
+  if (was_never_there) return never_worked(rule, knowledge);
   return can_precede(j, i, knowledge);
 }
 
-// In a loop of the graph each may have silenced the other: the one that fell silent first did.
+// In a loop of the graph each may have silenced the other: the one that surely fell silent first did.
 bool Causes::may_be_effect(std::size_t silent, std::size_t i, const Reach& reach,
                            const Knowledge& knowledge) const {
   const CauseNode& node = nodes_[silent];
-  if (node.trouble != Trouble::kSilent || node.onset.latest <= nodes_[i].onset.latest) return false;
+  if (node.trouble != Trouble::kSilent || node.onset.latest < nodes_[i].onset.earliest)
+    return false;
   const auto upstream = reach.upstream(reach.place_of(node.component));
   return std::ranges::any_of(touched_by(nodes_[i].rule, knowledge),
                              [&](ComponentId c) { return has(upstream, reach.place_of(c)); });

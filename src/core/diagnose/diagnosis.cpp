@@ -76,6 +76,10 @@ bool Diagnosis::is_known_dead(std::size_t i) const {
   return causes_[i].is_rule() && is_known_down(causes_[i].rule, knowledge_);
 }
 
+bool Diagnosis::is_evident(std::size_t i) const {
+  return is_known_dead(i) || (causes_[i].is_rule() && reads_inactive(causes_[i].rule, knowledge_));
+}
+
 bool Diagnosis::hangs_by_itself(std::size_t i) const {
   return is_about_hang(causes_[i].rule, knowledge_) && knowledge_.now >= may_wait_until(i);
 }
@@ -109,9 +113,9 @@ bool Diagnosis::is_enough(std::size_t j, std::size_t i) const {
   return own_cause(prior_[i], passes(j, i)) < 0.5;
 }
 
-std::optional<std::size_t> Diagnosis::dead_in_loop(std::size_t i) const {
+std::optional<std::size_t> Diagnosis::evident_in_loop(std::size_t i) const {
   for (const std::size_t j : causes_.loops()[causes_.loop_of(i)]) {
-    if (j != i && is_known_dead(j) && is_enough(j, i)) return j;
+    if (j != i && is_evident(j) && is_enough(j, i)) return j;
   }
   return std::nullopt;
 }
@@ -154,7 +158,7 @@ double Diagnosis::weight(std::size_t i, const std::vector<std::size_t>& loop, Ti
   constexpr double kLeast = 0.01;
   const double delay = seconds(causes_[i].first_onset - first) / seconds(knowledge_.rules.cycle);
   double weight = std::max(kLeast, still_there(causes_[i].rule, knowledge_)) *
-                  (prior_[i] / kCoincidence) / (1 + delay);
+                  ((is_evident(i) ? kKnownDown : prior_[i]) / kCoincidence) / (1 + delay);
   for (const std::size_t k : loop) {
     if (k != i) weight *= std::max(kLeast, kappa(i, k)) / Coupling::kUsual;
   }

@@ -72,10 +72,9 @@ class Diagnosis {
   double explained(std::size_t i, std::span<const std::size_t> no_causes = {}) const;
   // Is j alone enough for i to have no cause of its own, more likely than not?
   bool is_explained_by(std::size_t i, std::size_t j) const;
-  // The node of i's loop that has a dead process, if it is alone enough for i. The operating system
-  // told which was first there, so the members need not take turns. None if a process of i's own is
-  // dead.
-  std::optional<std::size_t> dead_in_loop(std::size_t i) const;
+  // The node of i's loop that is evident, if it is alone enough for i: the members need not take turns. None if a process of
+  // i's own is dead.
+  std::optional<std::size_t> evident_in_loop(std::size_t i) const;
   // The part of 1 - R_i (which others explain) that falls to node j: in proportion to kappa(j -> i)
   // g(j -> i) R_j; 0 if X_i does not take j.
   double share(std::size_t j, std::size_t i) const;
@@ -87,6 +86,8 @@ class Diagnosis {
 
  private:
   bool is_known_dead(std::size_t i) const;
+  // A process of it is dead, or it reads that a component is not active, which is no effect of data.
+  bool is_evident(std::size_t i) const;
   // Node i is a rule about a process that hangs, and waits for no other one that is down.
   bool hangs_by_itself(std::size_t i) const;
   bool is_enough(std::size_t j, std::size_t i) const;

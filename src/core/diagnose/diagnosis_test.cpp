@@ -41,8 +41,7 @@ TEST(Paths, AManyReadTopicCarriesFailuresWhereAllOfItsReadersAreIll) {
   std::string rules = failure_of("producer", "P") + failure_of("aside", "X");
   for (char c = 'a'; c < 'k'; ++c) rules += failure_of({c}, "R" + std::string(1, c));
   Scene scene(rules);
-  scene->states.state(scene.rule("X")).detection.trigger =
-      Slot::of(false);  // it is seen to be well
+  scene.see_working("X");
   scene.fail("P", -1h);
   for (char c = 'a'; c < 'k'; ++c) {
     scene.link("producer", {c});
@@ -59,7 +58,7 @@ TEST(Paths, AreNotCutByARuleThatTellsNothingOfData) {
     middle.replace(middle.find("x > 1"), 5, trigger);
     Scene scene(failure_of("a", "A") + middle + failure_of("c", "C"));
     scene.link("a", "b").link("b", "c").fail("A", -1h).fail("C", -1h);
-    scene->states.state(scene.rule("B")).detection.trigger = Slot::of(false);
+    scene.see_working("B");
     return own(scene, "C");
   };
   EXPECT_DOUBLE_EQ(own_of("y > 1"), 1);

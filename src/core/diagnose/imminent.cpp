@@ -69,7 +69,14 @@ std::optional<Slot> after_long_silence(const Input& input) {
   }
 }
 
+bool is_held_by_cooldown(RuleId rule, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[rule];
+  return state.phase == RulePhase::kQuiet && knowledge.now < state.quiet_until &&
+         is_coming(state, knowledge.rules[rule].policies);
+}
+
 bool is_imminent(RuleId rule, const Knowledge& knowledge) {
+  if (is_held_by_cooldown(rule, knowledge)) return true;
   if (!may_fire(rule, knowledge)) return false;
   return is_coming(knowledge.states[rule], knowledge.rules[rule].policies) ||
          fires_if_silence_lasts(rule, knowledge) || nears_its_threshold(rule, knowledge);

@@ -23,6 +23,8 @@ std::optional<Slot> after_long_silence(const Input& input);
 //   - the last reading of a signal that its trigger reads was nearer to firing it than any lately
 //     (SignalStore::is_unusual).
 bool is_imminent(RuleId rule, const Knowledge& knowledge);
+// Is it so, and fires only once its COOLDOWN is over? That hides the alarm, and not the evidence.
+bool is_held_by_cooldown(RuleId rule, const Knowledge& knowledge);
 
 // All that are, ascending.
 std::vector<RuleId> imminent_rules(const Knowledge& knowledge);

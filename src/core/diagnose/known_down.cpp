@@ -39,6 +39,22 @@ bool is_about_hang(RuleId rule, const Knowledge& knowledge) {
   });
 }
 
+bool reads_inactive(RuleId rule, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  const auto is_inactive = [&](ComponentId c) {
+    const ComponentState& state = knowledge.components[c];
+    return state.lifecycle != Lifecycle::kUnknown && state.lifecycle != Lifecycle::kActive;
+  };
+  return std::ranges::any_of(rules[rule].inputs, [&](InputId id) {
+    const Input& input = rules[id];
+    if (input.kind == Input::Kind::kLifecycle) return is_inactive(input.component);
+    const auto* group = input.subject() == Input::Subject::kSignal
+                            ? std::get_if<GroupId>(&rules[input.signal].source)
+                            : nullptr;
+    return group != nullptr && std::ranges::any_of(rules[*group].members, is_inactive);
+  });
+}
+
 namespace {
 
 // May a strategy of any rule bring back what answers nothing? A restart needs a process that runs.

@@ -91,6 +91,8 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
   };
   const auto add_quiet = [&](RuleId rule) {
     if (knowledge.rules[rule].components.empty()) return;  // a quiet report proves no health
+    if (knowledge.states[rule].detection.last_false == kLongAgo)
+      return;  // it cannot have fired yet
     const auto symptom = static_cast<std::size_t>(symptom_of(rule, knowledge));
     const Duration fires_in = evidence_within(rule, knowledge.now, knowledge);
     for (const ComponentId c : touched_by(rule, knowledge)) {

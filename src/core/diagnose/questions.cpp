@@ -155,8 +155,9 @@ std::vector<ComponentId> Questioner::suppliers(const Strategy& strategy) const {
 
 // The failure may show something that began after its first cause was repaired.
 Time Questioner::shows_since(RuleId failure) const {
+  const RuleState& state = knowledge_.states[failure];
   const Time onset = onset_of(failure, knowledge_).latest;
-  return later(std::max(onset, knowledge_.states[failure].masked_until), kProvesHealth);
+  return later(std::max({onset, state.masked_until, state.unhelped_at}), kProvesHealth);
 }
 
 Questions Questioner::about(const Strategy& strategy) {
@@ -216,6 +217,12 @@ bool is_overdue(ComponentId component, const Knowledge& knowledge) {
 bool is_to_be_asked_again(ComponentId component, const Knowledge& knowledge) {
   return is_overdue(component, knowledge) &&
          may_be_asked_again(knowledge.components[component], knowledge.now);
+}
+
+bool is_to_be_asked(ComponentId component, const TroubleSeen& trouble, const Knowledge& knowledge) {
+  return (trouble.is_of_values() && can_be_asked(component, knowledge) &&
+          may_be_asked_again(knowledge.components[component], knowledge.now)) ||
+         is_to_be_asked_again(component, knowledge);
 }
 
 }  // namespace culprit::diagnose

@@ -79,5 +79,7 @@ bool answers_no_question(const ComponentState& state);
 bool is_overdue(ComponentId component, const Knowledge& knowledge);
 // Is it time to ask such a one again?
 bool is_to_be_asked_again(ComponentId component, const Knowledge& knowledge);
+// The same for one whose trouble explains a failure: also if only its values have stopped, which it may send on change.
+bool is_to_be_asked(ComponentId component, const TroubleSeen& trouble, const Knowledge& knowledge);
 
 }  // namespace culprit::diagnose

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "language/evaluate.h"
+
 namespace culprit::diagnose {
 namespace {
 
@@ -219,14 +221,24 @@ Duration remembers(RuleId rule, const RuleSet& rules) {
   return longest;
 }
 
-bool counts_events(const Input& input) {
-  return input.kind == Kind::kLogs || input.kind == Kind::kGoals;
+namespace {
+
+// Does the input count events of which each makes the rule's trigger more likely? Goals that succeed do not.
+bool counts_bad_events(InputId id, RuleId rule, const Knowledge& knowledge) {
+  const Kind kind = knowledge.rules[id].kind;
+  if (kind != Kind::kLogs && kind != Kind::kGoals) return false;
+  const Assumed none{id, Slot::of(std::int64_t{0})};
+  const Slot trigger =
+      evaluate(knowledge.rules[rule].trigger, knowledge.signals.slots(), {&none, 1});
+  return !trigger.known || !trigger.b;
 }
+
+}  // namespace
 
 bool is_bad_anew(RuleId rule, Time since, const Knowledge& knowledge) {
   return std::ranges::any_of(knowledge.rules[rule].inputs, [&](InputId id) {
     const Input& input = knowledge.rules[id];
-    if (counts_events(input)) return knowledge.signals.arrivals(id).last > since;
+    if (counts_bad_events(id, rule, knowledge)) return knowledge.signals.arrivals(id).last > since;
     if (!watches_a_topic(input)) return false;
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
     if (!rhythm.last || rhythm.gap == Duration::zero()) return false;

@@ -5,7 +5,7 @@
 
 #include "base/sort_unique.h"
 #include "diagnose/blameless.h"
-#include "diagnose/timing.h"
+#include "diagnose/senders.h"
 
 namespace culprit::diagnose {
 namespace {
@@ -14,23 +14,11 @@ bool mends(const Adaptation& a) {
   return a.type == AdaptationType::kRestart || a.type == AdaptationType::kCall || launches(a);
 }
 
-// Those that alone publish what the rule reads.
+// Those that alone send what the rule reads.
 std::vector<ComponentId> publishers_read(const Rule& rule, const Knowledge& knowledge) {
-  const RuleSet& rules = knowledge.rules;
   std::vector<ComponentId> all;
   for (const InputId id : rule.inputs) {
-    const Input& input = rules[id];
-    const auto* field = input.kind == Input::Kind::kSignal
-                            ? std::get_if<TopicField>(&rules[input.signal].source)
-                            : nullptr;
-    std::optional<ComponentId> publisher;
-    if (field != nullptr || watches_a_topic(input)) {
-      publisher =
-          knowledge.graph.only_publisher(rules[field != nullptr ? field->topic : input.topic]);
-    } else if (input.kind == Input::Kind::kSignal) {
-      publisher = publisher_of(input.signal, rules);
-    }
-    if (publisher) all.push_back(*publisher);
+    if (const auto sender = sender_of(knowledge.rules[id], knowledge)) all.push_back(*sender);
   }
   sort_unique(all);
   return all;

@@ -5,6 +5,7 @@
 #include "diagnose/known_down.h"
 #include "diagnose/lost.h"
 #include "diagnose/questions.h"
+#include "diagnose/senders.h"
 
 namespace culprit::diagnose {
 namespace {
@@ -34,6 +35,13 @@ std::optional<TroubleSeen> present_trouble(ComponentId component, std::vector<Ti
   return std::nullopt;
 }
 
+// The trouble follows a silence: it was silent, and was killed.
+void follow(TroubleSeen& trouble, const Onset& silence) {
+  if (trouble.trouble == Trouble::kNeverSeen || silence.latest >= trouble.onset.earliest) return;
+  trouble.onset.earliest = silence.earliest;
+  trouble.first_onset = std::min(trouble.first_onset, silence.latest);
+}
+
 // A trouble that follows another one goes back to the onset of that: what needed the component did not work since.
 std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>& published,
                                        const Knowledge& knowledge) {
@@ -45,49 +53,6 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, std::vector<Time>&
     seen->first_onset = first->latest;
   }
   return seen;
-}
-
-std::optional<ComponentId> sender_of(SignalId signal, const Knowledge& knowledge) {
-  const auto* field = std::get_if<TopicField>(&knowledge.rules[signal].source);
-  return field != nullptr ? knowledge.graph.only_publisher(knowledge.rules[field->topic])
-                          : publisher_of(signal, knowledge.rules);
-}
-
-// Values that are sent on demand pause longer.
-bool has_stopped(InputId id, const Knowledge& knowledge) {
-  const SignalStore::Arrivals& arrivals = knowledge.signals.arrivals(id);
-  const Duration usual = std::max(5 * arrivals.gap, 2 * arrivals.longest);
-  return arrivals.count == SignalStore::kRegular && knowledge.now > later(arrivals.last, usual) &&
-         knowledge.signals.confirmed_by(id) == kLongAgo;
-}
-
-// Does anything else come from it that culprit watches?
-bool still_sends(ComponentId component, const Knowledge& knowledge) {
-  const RuleSet& rules = knowledge.rules;
-  for (std::size_t t = 0; t < rules.topics.size(); ++t) {
-    const TopicId topic(t);
-    if (knowledge.signals.rhythm(topic).last && !is_silent(topic, knowledge.now, knowledge) &&
-        knowledge.graph.only_publisher(rules[topic]) == component)
-      return true;
-  }
-  for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
-    const InputId id(i);
-    if (rules[id].subject() == Input::Subject::kSignal && !has_stopped(id, knowledge) &&
-        sender_of(rules[id].signal, knowledge) == component)
-      return true;
-  }
-  return false;
-}
-
-// The one whose values the input has, if all that it sends has stopped.
-std::optional<ComponentId> silent_sender(InputId id, const Knowledge& knowledge) {
-  const Input& input = knowledge.rules[id];
-  if (input.subject() != Input::Subject::kSignal || !has_stopped(id, knowledge))
-    return std::nullopt;
-  const auto* field = std::get_if<TopicField>(&knowledge.rules[input.signal].source);
-  if (field != nullptr && may_be_lost(field->topic, knowledge.now, knowledge)) return std::nullopt;
-  const auto sender = sender_of(input.signal, knowledge);
-  return sender && !still_sends(*sender, knowledge) ? sender : std::nullopt;
 }
 
 }  // namespace
@@ -154,16 +119,22 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
         may_be_lost(topic, knowledge.now, knowledge))
       continue;
     const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);
-    if (!component || all[component->index] || knowledge.is_unheard(*component)) continue;
+    if (!component || knowledge.is_unheard(*component)) continue;
     const Onset onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
-    all[component->index] = TroubleSeen{Trouble::kSilent, onset, topic, kNever, onset.earliest};
+    auto& seen = all[component->index];
+    if (seen)
+      follow(*seen, onset);
+    else
+      seen = TroubleSeen{Trouble::kSilent, onset, topic, kNever, onset.earliest};
   }
-  for (std::size_t i = 0; i < knowledge.rules.inputs.size(); ++i) {
-    const auto component = silent_sender(InputId(i), knowledge);
-    if (!component || all[component->index] || knowledge.is_unheard(*component)) continue;
-    const SignalStore::Arrivals& arrivals = knowledge.signals.arrivals(InputId(i));
-    const Onset onset{arrivals.last, later(arrivals.last, arrivals.gap)};
-    all[component->index] = TroubleSeen{Trouble::kSilent, onset, {}, kNever, onset.earliest};
+  const auto stopped = all_stopped(knowledge);
+  for (std::size_t c = 0; c < stopped.size(); ++c) {
+    const auto& onset = stopped[c];
+    if (!onset || knowledge.is_unheard(ComponentId(c))) continue;
+    if (all[c])
+      follow(*all[c], *onset);
+    else
+      all[c] = TroubleSeen{Trouble::kSilent, *onset, {}, kNever, onset->earliest};
   }
   return all;
 }

@@ -33,6 +33,9 @@ struct TroubleSeen {
   std::optional<TopicId> topic{};  // kSilent: that is silent; empty: a signal is
   Time first_onset = kNever;       // the latest onset of the first trouble
   Time began = kLongAgo;           // the earliest onset of this one
+
+  // Have only the values of its signals stopped?
+  bool is_of_values() const { return trouble == Trouble::kSilent && !topic; }
 };
 
 // The worst known trouble of the component now; empty: no trouble is known. A component on an

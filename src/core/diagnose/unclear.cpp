@@ -28,8 +28,9 @@ Time shows_by(RuleId failure, Time since, const Knowledge& knowledge) {
 }
 
 Time unclear_until(RuleId failure, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[failure];
   const Time last =
-      std::max(begun_last(failure, knowledge), knowledge.states[failure].masked_until);
+      std::max({begun_last(failure, knowledge), state.masked_until, state.unhelped_at});
   return last == kLongAgo ? last : shows_by(failure, last, knowledge);
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "diagnose/timing.h"
+#include "diagnose/senders.h"
 
 namespace culprit::execute {
 namespace {
@@ -102,16 +102,20 @@ std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
   if (auto limit = exceeded(kinds_[static_cast<std::size_t>(kind)], Restraint::kClassIntensity,
                             words(kind), now))
     return limit;
+  const bool only_starts = knowledge_.only_starts_the_gone(strategy);
   for (const ComponentId component : strategy.components) {
     const std::string& name = knowledge_.rules[component].name;
     if (auto limit =
             exceeded(components_[component.index].budget, Restraint::kComponentIntensity,
                      {"strategy was begun at " + name, "strategies were begun at " + name}, now))
       return limit;
+    const bool is_paused_for_it = only_starts && knowledge_.components[component].alive != false;
+    if (is_paused_for_it) continue;
     if (auto limit = quiet(component, now)) return limit;
   }
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (!begins_anew(adaptation)) continue;
+    if (auto limit = start(adaptation.component, now)) return limit;
     const std::string& name = knowledge_.rules[adaptation.component].name;
     const PerComponent& state = components_[adaptation.component.index];
     auto limit = exceeded(state.begun_anew, Restraint::kRestarts,
@@ -154,40 +158,42 @@ std::optional<Limits::Limit> Limits::backoff(ComponentId component, RuleId rule,
                knowledge_.rules[component].name + " was restarted a short while ago", until};
 }
 
-// How long its start may take, if nothing has come yet of what came before it.
-Duration Limits::ready(ComponentId component) const {
+std::optional<Limits::Limit> Limits::launched_within(Duration time, ComponentId component,
+                                                     Time since, Time now) const {
+  const Time until = later(since, time);
+  if (since == kLongAgo || until <= now) return std::nullopt;
+  return Limit{Restraint::kQuietPeriod,
+               knowledge_.rules[component].name + " was launched a moment ago", until};
+}
+
+// What is being started, and has sent nothing yet of what came before, is not begun anew within its READY.
+std::optional<Limits::Limit> Limits::start(ComponentId component, Time now) const {
   const ComponentState& state = knowledge_.components[component];
-  const Duration most = knowledge_.rules[component].ready;
-  if (most == Duration::zero() || state.alive == false) return Duration::zero();
-  const Time last = diagnose::published_last(knowledge_)[component.index];
-  return last != kLongAgo && last < state.node_seen ? most : Duration::zero();
+  const Duration ready = knowledge_.rules[component].ready;
+  if (ready == Duration::zero() || state.alive == false) return std::nullopt;
+  const Time last = diagnose::sent_last(component, knowledge_);
+  if (last == kLongAgo || last >= state.node_seen) return std::nullopt;
+  return launched_within(ready, component, components_[component.index].launched, now);
 }
 
 std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) const {
-  const auto limit = [&](ComponentId c, Time since, Duration quiet) -> std::optional<Limit> {
-    const Time until = later(since, quiet);
-    if (since == kLongAgo || until <= now) return std::nullopt;
-    return Limit{Restraint::kQuietPeriod, knowledge_.rules[c].name + " was launched a moment ago",
-                 until};
-  };
-  const auto producers = knowledge_.graph.upstream(component);
   // A component that is known to be down need not wait.
   const bool is_dead = knowledge_.components[component].alive == false;
   const bool finds_others = !is_dead && knowledge_.graph.reads_others(component);
   const Duration own_quiet = finds_others
                                  ? std::max(options_.quiet_after_launch, options_.quiet_downstream)
                                  : options_.quiet_after_launch;
-  if (auto own = limit(component, components_[component.index].launched, own_quiet)) return own;
-  if (auto start = limit(component, components_[component.index].launched, ready(component)))
-    return start;
+  const Time launched = components_[component.index].launched;
+  if (auto own = launched_within(own_quiet, component, launched, now)) return own;
   if (is_dead) return std::nullopt;
-  for (const ComponentId upstream : producers) {
+  for (const ComponentId upstream : knowledge_.graph.upstream(component)) {
     // For those that it feeds, it is back when what it publishes is there.
     const ComponentState& state = knowledge_.components[upstream];
     const Time came = components_[upstream.index].came;
     if (came == kLongAgo) continue;
     const Time since = std::max({came, state.ends_back, state.awaits_ends_until});
-    if (auto of_upstream = limit(upstream, since, options_.quiet_downstream)) return of_upstream;
+    if (auto of_upstream = launched_within(options_.quiet_downstream, upstream, since, now))
+      return of_upstream;
   }
   return std::nullopt;
 }

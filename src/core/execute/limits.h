@@ -77,7 +77,9 @@ class Limits {
 
   std::optional<Limit> backoff(ComponentId component, RuleId rule, Time now) const;
   std::optional<Limit> quiet(ComponentId component, Time now) const;
-  Duration ready(ComponentId component) const;
+  std::optional<Limit> launched_within(Duration time, ComponentId component, Time since,
+                                       Time now) const;
+  std::optional<Limit> start(ComponentId component, Time now) const;
   // `failed`: when the failure of `rule` was detected.
   void spend(StrategyId strategy, Time now, Time failed);
   void give_back(StrategyId strategy);

@@ -136,6 +136,9 @@ std::optional<StrategyExecutor::Missing> StrategyExecutor::missing_for(const Run
       is_later = true;
     } else if (is_later && is_down(adaptation.component)) {
       return Missing{adaptation.component, "is down"};
+    } else if (is_later && adaptation.type == AdaptationType::kActivate &&
+               knowledge_.components[adaptation.component].lifecycle == Lifecycle::kInactive) {
+      return Missing{adaptation.component, "is inactive"};
     } else if (is_later && has_failed) {
       return Missing{adaptation.component, "could not be brought up"};
     }

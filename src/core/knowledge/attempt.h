@@ -22,6 +22,7 @@ struct Attempt {
   Time chosen = kNever;
   Time first_change = kNever;  // when the first request went out that changes anything
   Time effective = kNever;     // when the last adaptation had taken effect
+  Time spoke = kNever;         // when all that it started had sent the first of what the rule reads
   Time deadline = kNever;      // of the verdict
   std::string obstacle;        // why an adaptation could not be carried out; empty: none failed
   // Another strategy that can have had the same effect overlapped with it: its outcome proves

@@ -70,9 +70,10 @@ void ComponentStates::set_time_held(ComponentId component, std::optional<Time> s
 
 void ComponentStates::intend_lifecycle(ComponentId component, Lifecycle state, Time at,
                                        EventLog& events) {
-  Lifecycle& intended = components_[component.index].intended_lifecycle;
-  if (intended == state) return;
-  intended = state;
+  ComponentState& of = components_[component.index];
+  if (of.intended_lifecycle == state) return;
+  of.intended_lifecycle = state;
+  of.intended_since = at;
   events.tell(at, LifecycleIntended{component, state});
 }
 

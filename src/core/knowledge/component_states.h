@@ -86,6 +86,7 @@ struct ComponentState {
   // that a strategy brought it to. A process that takes the place of another is brought there,
   // because the state that it comes up in was not chosen.
   Lifecycle intended_lifecycle = Lifecycle::kUnknown;
+  Time intended_since = kLongAgo;  // when that changed last
   ComingUp coming_up;              // of the last process that was seen to come up, or as remembered
   bool is_rising = false;          // it was seen unconfigured, and is not active yet
   Time culprit_raised = kLongAgo;  // when culprit took it through its lifecycle last
@@ -146,6 +147,13 @@ struct ComponentState {
 
   // An earlier strategy has left it deactivated, and nothing else has changed that.
   bool is_to_be_given_back() const { return brought && brought->is_owed && !brought->is_changed; }
+
+  // Is it inactive, as somebody wished at that time already?
+  bool is_inactive_since(Time at) const {
+    return alive == true && lifecycle == Lifecycle::kInactive &&
+           intended_lifecycle == Lifecycle::kInactive && intended_since <= at &&
+           !is_to_be_given_back();
+  }
 
   // Its process runs, and its node is not there, or not there yet.
   bool is_coming_up() const { return !in_graph && pid != 0 && process == ProcessState::kRunning; }

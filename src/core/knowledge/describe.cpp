@@ -38,8 +38,12 @@ class Describer {
   std::string operator()(const StrategyChosen& e) const {
     const Strategy& strategy = rules_[e.strategy];
     std::vector<std::string> blamed;
-    for (const ComponentId component : strategy.components)
-      blamed.push_back(rules_[component].name);
+    const auto& repaired = rules_[strategy.rule].repaired;
+    for (const ComponentId component : strategy.components) {
+      const bool is_only_paused =
+          !repaired.empty() && !std::ranges::binary_search(repaired, component);
+      if (!is_only_paused) blamed.push_back(rules_[component].name);
+    }
     std::vector<std::string> failures{rules_[strategy.rule].name};
     for (const RuleId explained : e.explains) failures.push_back(rules_[explained].name);
     std::vector<std::string> ended;

@@ -42,10 +42,18 @@ void note_heard(const Knowledge& knowledge, KnownRobot& known) {
   known.is_whole = discovered.is_whole();
 }
 
+std::vector<std::optional<ComponentId>> publishers_of_signals(const RuleSet& rules) {
+  std::vector<std::optional<ComponentId>> all;
+  for (std::size_t s = 0; s < rules.signals.size(); ++s)
+    all.push_back(publisher_of(SignalId(s), rules));
+  return all;
+}
+
 }  // namespace
 
 Knowledge::Knowledge(const RuleSet& rule_set)
     : rules(rule_set),
+      signal_publishers(publishers_of_signals(rules)),
       signals(rules),
       graph(rules),
       components(rules),
@@ -62,6 +70,7 @@ Knowledge::Knowledge(const RuleSet& rule_set)
 
 Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
     : rules(rule_set),
+      signal_publishers(other.signal_publishers),
       signals(rules, other.signals),
       graph(other.graph),
       components(other.components),
@@ -134,23 +143,29 @@ bool Knowledge::is_known_gone(ComponentId component) const {
   return state.pid != 0 && state.process == ProcessState::kGone && state.alive == false;
 }
 
-// A strategy in steps may also find done what an earlier try did for the start, and take that back.
+// Beside the starts it may change the new processes. A strategy in steps may also find done what an earlier try did for the
+// start, pause what depends on it, and take that back.
 bool Knowledge::only_starts_the_gone(const Strategy& strategy) const {
   using enum AdaptationType;
-  bool starts_any = false;
-  for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
-    const Adaptation& adaptation = strategy.adaptations[i];
-    const ComponentId component = adaptation.component;
-    const bool is_done_step =
-        (adaptation.type == kStop && is_known_gone(component)) ||
-        (adaptation.type == kDeactivate && components[component].is_at_rest());
-    if (launches(adaptation) && rules[component].can_start() && is_known_gone(component)) {
-      starts_any = true;
-    } else if (!strategy.has_steps() || !(is_done_step || gives_back(i, strategy))) {
-      return false;
-    }
+  std::vector<ComponentId> started;
+  for (const Adaptation& each : strategy.adaptations) {
+    if (!launches(each)) continue;
+    if (!rules[each.component].can_start() || !is_known_gone(each.component)) return false;
+    started.push_back(each.component);
   }
-  return starts_any;
+  const auto is_started = [&](ComponentId c) {
+    return std::ranges::find(started, c) != started.end();
+  };
+  const auto is_part_of_it = [&](const Adaptation& each) {
+    const ComponentId component = each.component;
+    if (each.type == kStop) return strategy.has_steps() && is_known_gone(component);
+    if (is_started(component)) return true;
+    const bool is_pause = each.type == kDeactivate || each.type == kActivate;
+    return strategy.has_steps() && is_pause &&
+           (components[component].is_at_rest() ||
+            std::ranges::any_of(graph.upstream(component), is_started));
+  };
+  return !started.empty() && std::ranges::all_of(strategy.adaptations, is_part_of_it);
 }
 
 bool Knowledge::goes_on(StrategyId id) const {

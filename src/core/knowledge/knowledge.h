@@ -2,6 +2,7 @@
 // `Writes` names; only the manager's step touches it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct Knowledge {
   ~Knowledge();
 
   const RuleSet& rules;
+  const std::vector<std::optional<ComponentId>> signal_publishers;  // by signal: publisher_of()
   SignalStore signals;
   DependencyGraph graph;
   ComponentStates components;

@@ -168,8 +168,8 @@ std::optional<RuleId> RuleStates::sickness(ComponentId component, Criticality le
 
 bool RuleStates::awaits_person(RuleId id) const {
   const RuleState& state = states_[id.index];
-  return state.phase == RulePhase::kExhausted && state.detection.trigger.known &&
-         state.detection.trigger.b;
+  const Slot& trigger = state.detection.trigger;
+  return state.phase == RulePhase::kExhausted && (!trigger.known || trigger.b);
 }
 
 std::optional<RuleId> RuleStates::awaiting_person_at(ComponentId component, Criticality level,

@@ -76,10 +76,10 @@ struct LeftOff {
 struct Detection {
   Slot trigger;                   // as last evaluated
   Time trigger_since = kLongAgo;  // since when it has that value
-  // When it was known to be false last although each topic that it reads had come: the function
-  // worked. kLongAgo: never yet.
+  // When it last showed, by being false, that the function worked (analyze/seen_working.h). kLongAgo: never yet.
   Time last_false = kLongAgo;
-  bool armed = true;  // ON_CHANGE: the trigger was not true since the rule acted
+  bool works = false;  // it was false when it was evaluated last, and showed that
+  bool armed = true;   // ON_CHANGE: the trigger was not true since the rule acted
 
   // HOLD n/k: the last k evaluations, one per cycle, newest at `newest`.
   std::vector<bool> history;
@@ -99,15 +99,19 @@ struct Detection {
 struct RuleState {
   RulePhase phase = RulePhase::kQuiet;
   Detection detection;
-  Time failing_since = kNever;    // when the failure was detected
-  std::optional<Onset> onset;     // when it began, as far as known when it was detected
-  Time first_onset = kNever;      // the latest onset of its first detection, if it is flapping
-  Time masked_until = kLongAgo;   // until then a failure upstream was there that may have caused it
+  Time failing_since = kNever;   // when the failure was detected
+  std::optional<Onset> onset;    // when it began, as far as known when it was detected
+  Time first_onset = kNever;     // the latest onset of its first detection, if it is flapping
+  Time masked_until = kLongAgo;  // until then a failure upstream was there that may have caused it
+  // When a strategy for it did not help last. That may have, and what shows since have a cause that began meanwhile.
+  Time unhelped_at = kLongAgo;
   Time worked_until = kLongAgo;   // when it was seen to be well last before that; kLongAgo: never
   Time recurring_since = kNever;  // if it cleared and is back: when it was detected first
   Time gone_since = kLongAgo;     // when it cleared last
-  bool was_repaired = false;      // a strategy of its own cleared it then
-  Time quiet_until = kLongAgo;    // COOLDOWN
+  Time repaired = kLongAgo;       // when a strategy of its own cleared it last
+  bool is_unproven =
+      false;  // it became unknown while it was there, and was not known to be gone since
+  Time quiet_until = kLongAgo;  // COOLDOWN
 
   Search search;
   std::optional<Attempt> attempt;

@@ -115,14 +115,16 @@ class SignalStore {
     struct Slowing {
       Time since{};     // the last message that came in time
       Duration gap{};   // that was usual before
-      int in_time = 0;  // the last messages that came in time again
+      int in_time = 0;  // so many more messages came in time again than late
     };
-    std::optional<Slowing> slowing{};  // empty: it is not slow
+    std::optional<Slowing>
+        slowing{};  // empty: it is not slow, or has been for so long that this is its pace
     bool is_slow_since(Time at) const {
       return slowing && slowing->since <= later(at, slowing->gap);
     }
     static constexpr double kSlowPace = 1.5;
     static constexpr int kBackInPace = 3;  // messages in time: it is not slow any more
+    static constexpr Duration kSlowAtMost = std::chrono::seconds(30);
 
     // Does it come all the time? A topic that is sent on demand pauses often or for long.
     bool is_steady() const { return gap > Duration::zero() && paused <= flowed / kFlowsForPause; }

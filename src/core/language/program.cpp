@@ -3,6 +3,34 @@
 #include <cmath>
 
 namespace culprit {
+namespace {
+
+// Where the code of the last operand of an instruction before `end` begins.
+std::size_t last_operand(const std::vector<Instruction>& code, std::size_t end) {
+  std::size_t wanted = 1;
+  while (wanted > 0) {
+    --end;
+    wanted += static_cast<std::size_t>(operand_count(code[end].op));
+    --wanted;
+  }
+  return end;
+}
+
+// Of the code in [begin, end).
+void add_alternatives(const Program& program, std::size_t begin, std::size_t end,
+                      std::vector<Program>& to) {
+  while (program.code[end - 1].op == Op::kOr) {
+    const std::size_t right = last_operand(program.code, end - 1);
+    add_alternatives(program, right, end - 1, to);
+    end = right;
+  }
+  const auto at = [&](std::size_t i) {
+    return program.code.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  to.push_back({program.type, {at(begin), at(end)}, program.constants});
+}
+
+}  // namespace
 
 Slot Slot::of(bool value) {
   Slot slot;
@@ -66,6 +94,12 @@ std::string_view to_string(Type type) {
       return "duration";
   }
   return "";
+}
+
+std::vector<Program> alternatives(const Program& program) {
+  std::vector<Program> all;
+  if (!program.empty()) add_alternatives(program, 0, program.code.size(), all);
+  return all;
 }
 
 }  // namespace culprit

@@ -164,6 +164,9 @@ struct Program {
   bool empty() const { return code.empty(); }
 };
 
+// Those of which one is enough to make it true: `a || b || c` has three, any other program is its only one. In no order.
+std::vector<Program> alternatives(const Program& program);
+
 // The stack of an evaluation. The checker refuses programs that need more.
 inline constexpr std::size_t kStackSize = 512;
 

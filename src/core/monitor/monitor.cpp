@@ -69,6 +69,8 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
     switch (input.subject()) {
       case Input::Subject::kTopic:
         topics_[input.topic.index].inputs.push_back(id);
+        topics_[input.topic.index].longest_window =
+            std::max(topics_[input.topic.index].longest_window, input.window);
         topics_[input.topic.index].needs_phi |= input.kind == Kind::kPhi;
         if (input.kind == Kind::kRate || input.kind == Kind::kGoals)
           derived_[i].count = monitor::SlidingCount(input.window);

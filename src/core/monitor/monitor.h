@@ -126,6 +126,7 @@ class Monitor {
     monitor::PhiAccrual phi;
     monitor::LossMeter loss;
     std::vector<InputId> inputs;
+    Duration longest_window{};  // of these
     bool needs_phi = false;
     // There was a gap in reception since the last sample: until then its silence is as long as it
     // was.
@@ -249,6 +250,8 @@ class Monitor {
 
   // Whether a component that publishes the topic joined the graph since then.
   bool has_begun_since(Time before, TopicId topic) const;
+  bool has_begun_since(Time before, ComponentId sender) const;
+  bool has_sender_begun_since(Time before, InputId id) const;
   // Between two samples, the last of which was before.
   void note_pause(SignalStore::Rhythm& rhythm, Duration interval, TopicId topic) const;
   std::vector<TopicId> topics_of(std::optional<ComponentId> publisher,

@@ -174,6 +174,7 @@ void Monitor::remember(const History& past) {
     if (const auto* intended = std::get_if<LifecycleIntended>(&event.what)) {
       ComponentState& state = write_.components[intended->component];
       state.intended_lifecycle = intended->state;
+      state.intended_since = event.at;
       state.brought.reset();
       if (intended->is_owed) write_.components.owe_activation(intended->component, event.at);
     }

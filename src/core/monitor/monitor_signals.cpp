@@ -121,11 +121,24 @@ WhyUnknown Monitor::why_unknown(SignalId signal, Time now) const {
   return state.unusable.value_or(WhyUnknown::kNotCovered);
 }
 
+bool Monitor::has_sender_begun_since(Time before, InputId id) const {
+  const Input& input = knowledge_.rules[id];
+  if (input.subject() != Input::Subject::kSignal) return false;
+  const auto* field = std::get_if<TopicField>(&knowledge_.rules[input.signal].source);
+  if (field != nullptr) return has_begun_since(before, field->topic);
+  const auto& publisher = knowledge_.signal_publishers[input.signal.index];
+  return publisher && has_begun_since(before, *publisher);
+}
+
 void Monitor::note_arrival(InputId id, Time at) {
   SignalStore::Arrivals arrivals = knowledge_.signals.arrivals(id);
-  if (arrivals.last != kLongAgo && arrivals.last >= awake_) {
-    arrivals.gap = usual_gap(arrivals.gap, at - arrivals.last);
-    arrivals.longest = std::max(arrivals.longest, at - arrivals.last);
+  const bool is_heard = arrivals.last != kLongAgo && arrivals.last >= awake_;
+  const Duration pause = is_heard ? at - arrivals.last : Duration::zero();
+  const bool is_longer = pause > arrivals.longest;
+  // Who begins anew is silent for a while.
+  if (is_heard && !(is_longer && has_sender_begun_since(arrivals.last, id))) {
+    arrivals.gap = usual_gap(arrivals.gap, pause);
+    arrivals.longest = std::max(arrivals.longest, pause);
   }
   arrivals.last = at;
   arrivals.count = std::min(arrivals.count + 1, SignalStore::kRegular);

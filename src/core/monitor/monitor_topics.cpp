@@ -24,15 +24,17 @@ void note_silence(SignalStore::Rhythm& rhythm, Duration interval, Time at) {
     silence = {*rhythm.last, at, before};
 }
 
-// A message comes after `interval`.
-void note_pace(SignalStore::Rhythm& rhythm, Duration interval) {
+// A message comes after `interval`. A pace that has lasted for longer than any rule of the topic looks back is the usual one.
+void note_pace(SignalStore::Rhythm& rhythm, Duration interval, Duration longest_window) {
   auto& slowing = rhythm.slowing;
+  const Duration lasting = std::max(SignalStore::Rhythm::kSlowAtMost, longest_window);
+  if (slowing && *rhythm.last > later(slowing->since, lasting)) slowing.reset();
   const Duration usual = slowing ? slowing->gap : rhythm.gap;
   const bool is_slow = usual > Duration::zero() &&
                        seconds(interval) > SignalStore::Rhythm::kSlowPace * seconds(usual);
   if (is_slow) {
     if (!slowing) slowing = {*rhythm.last, usual};
-    slowing->in_time = 0;
+    slowing->in_time = std::max(slowing->in_time - 1, 0);
   } else if (slowing && ++slowing->in_time == SignalStore::Rhythm::kBackInPace) {
     slowing.reset();
   }
@@ -56,7 +58,7 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
     note_pause(rhythm, interval, seen.topic);
     rhythm.interval = smoothed(rhythm.interval, interval);
-    note_pace(rhythm, interval);
+    note_pace(rhythm, interval, topic.longest_window);
     note_silence(rhythm, interval, at);
   }
   rhythm.last = topic.last = at;
@@ -90,22 +92,24 @@ void Monitor::note_pause(SignalStore::Rhythm& rhythm, Duration interval, TopicId
   rhythm.longest = std::max(rhythm.longest, interval);
 }
 
-// Did its publisher, or something that this depends on, begin anew? Either keeps the topic silent
-// for a while.
+// Did a publisher of the topic, or something that this depends on, begin anew? Either keeps the topic silent for a while.
 bool Monitor::has_begun_since(Time before, TopicId topic) const {
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+    const ComponentId publisher(c);
+    if (knowledge_.graph.publishes(publisher, knowledge_.rules[topic]) &&
+        has_begun_since(before, publisher))
+      return true;
+  }
+  return false;
+}
+
+bool Monitor::has_begun_since(Time before, ComponentId sender) const {
   const auto is_new = [&](ComponentId component) {
     const ComponentState& state = knowledge_.components[component];
     return state.node_seen >= before ||
            (state.lifecycle_since != kLongAgo && state.lifecycle_since >= before);
   };
-  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
-    const ComponentId component(c);
-    if (!knowledge_.graph.publishes(component, knowledge_.rules[topic])) continue;
-    if (is_new(component)) return true;
-    const std::vector<ComponentId>& upstream = knowledge_.graph.upstream(component);
-    if (std::any_of(upstream.begin(), upstream.end(), is_new)) return true;
-  }
-  return false;
+  return is_new(sender) || std::ranges::any_of(knowledge_.graph.upstream(sender), is_new);
 }
 
 void Monitor::see(TopicId topic, Time at) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/timing.h"
 #include "knowledge/old_value.h"
 
 namespace culprit::plan {
@@ -31,11 +32,18 @@ bool may_bring_back(RuleId rule, ComponentId component, const Knowledge& knowled
   });
 }
 
+// Its trigger is true, for less than its FOR, say.
+bool is_coming(RuleId rule, const Knowledge& knowledge) {
+  const Slot& trigger = knowledge.states[rule].detection.trigger;
+  return trigger.known && trigger.b && diagnose::may_fire(rule, knowledge);
+}
+
 bool is_under_repair(ComponentId component, const Knowledge& knowledge) {
   if (knowledge.components[component].alive.value_or(false)) return false;
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     const RuleId id(r);
-    const bool is_at_work = knowledge.states.is_active(id) || knowledge.states.awaits_person(id);
+    const bool is_at_work = knowledge.states.is_active(id) || knowledge.states.awaits_person(id) ||
+                            is_coming(id, knowledge);
     if (is_at_work && may_bring_back(id, component, knowledge)) return true;
   }
   return false;

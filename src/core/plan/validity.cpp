@@ -282,24 +282,30 @@ bool activates(const Strategy& strategy, ComponentId component) {
   });
 }
 
+// Is what it adapts, and is inactive, inactive afterwards?
+bool keeps_inactive(AdaptationType type) {
+  return type == AdaptationType::kRedeploy || type == AdaptationType::kCall ||
+         syntax::names_parameter(type);
+}
+
 // A person, or another program, deactivated what sends the rule's topics before they were missed. A redeploy brings
-// it back to that state, so it sends nothing all the same. Beside strategies that were tried in vain the rule is
+// it back to that state, and a call leaves it there, so it sends nothing all the same. Beside strategies that were tried in vain the rule is
 // given up. (Inactive since then: an interrupted restart may have left it so.)
 std::optional<Invalid> stays_deactivated(const Strategy& strategy, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   const RuleState& of_rule = knowledge.states[strategy.rule];
   for (const Adaptation& a : strategy.adaptations) {
     const ComponentState& state = knowledge.components[a.component];
-    const bool is_inactive = state.alive == true && state.lifecycle == Lifecycle::kInactive &&
-                             state.intended_lifecycle == Lifecycle::kInactive &&
-                             state.lifecycle_since <= of_rule.failing_since;
-    const bool is_ours = state.brought && !state.brought->is_changed;
-    if (a.type != AdaptationType::kRedeploy || !is_inactive || is_ours ||
+    if (!keeps_inactive(a.type) || !state.is_inactive_since(of_rule.failing_since) ||
         is_of_any_group(a.component, rules) || activates(strategy, a.component) ||
         reads_lifecycle(strategy, a.component, rules) ||
         !is_missed_by(strategy, a.component, knowledge))
       continue;
-    const std::string why = "is inactive, and a redeploy keeps its state";
+    const std::string why =
+        "is inactive, and a " +
+        std::string(a.type == AdaptationType::kRedeploy ? "redeploy keeps its state"
+                    : a.type == AdaptationType::kCall   ? "call does not change that"
+                                                        : "parameter does not change that");
     const std::vector<bool>& tried = of_rule.search.tried;
     if (std::ranges::find(tried, true) == tried.end()) return Invalid{a.component, why, true};
     return Invalid{a.component, rules[a.component].name + " " + why};

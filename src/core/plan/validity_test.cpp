@@ -101,8 +101,8 @@ TEST(Validity, RulesOutToRedeployForItsDataWhatOthersHaveDeactivated) {
   scene.tried("Silent.restart");
   ASSERT_TRUE(invalid("Silent.again"));
   EXPECT_FALSE(invalid("Silent.again")->waits) << "all was tried";
-  camera.brought = Brought{Lifecycle::kInactive};
-  EXPECT_FALSE(invalid("Silent.again")) << "a strategy has deactivated it";
+  camera.brought = Brought{Lifecycle::kInactive, false, true};
+  EXPECT_FALSE(invalid("Silent.again")) << "a strategy owes it its activation";
 }
 
 // It holds what it has set as long as its failure is there, and no more than that.

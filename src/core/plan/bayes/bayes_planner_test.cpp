@@ -44,7 +44,7 @@ TEST(BayesPlanner, AFailureDoesNotGoThroughAComponentThatIsSeenToBeWell) {
   scene.fail("A").fail("C");
   scene.plan(kFewRedeployments);
   EXPECT_EQ(scene.candidate("C.restart").excluded, Condition::kDependency) << "b may be ill";
-  scene->states.state(scene.rule("B")).detection.trigger = Slot::of(false);
+  scene.see_working("B");
   scene.plan(kFewRedeployments);
   EXPECT_NE(scene.candidate("C.restart").excluded, Condition::kDependency);
 }

@@ -132,7 +132,7 @@ bool LikelyCauses::is_left_to_person(std::size_t node) const {
 
 std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
   const double own = diagnosis_.against_others(failure, contradicted_);
-  if (own >= 0.5) return diagnosis_.dead_in_loop(failure);
+  if (own >= 0.5) return diagnosis_.evident_in_loop(failure);
   std::int64_t most = 0;
   std::size_t cause = failure;
   diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
@@ -143,7 +143,7 @@ std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
   // To wait for a person in vain is worse than a strategy in vain. Not where the process upstream is known to be gone.
   constexpr double kWorthATry = 1.0 / 3;
   const bool may_be_wrong = is_exhausted(cause) && !is_known_down(causes_[cause].rule, knowledge_);
-  if (own >= kWorthATry && may_be_wrong) return diagnosis_.dead_in_loop(failure);
+  if (own >= kWorthATry && may_be_wrong) return diagnosis_.evident_in_loop(failure);
   return cause;
 }
 

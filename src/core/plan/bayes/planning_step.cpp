@@ -317,7 +317,8 @@ void PlanningStep::await(ComponentId component, WeighedCandidate& weighed) const
   weighed.candidate.within = later(since, kLongestQuestion) - knowledge_.now;
 }
 
-// While one that did not answer explains a failure, it is asked again: it may only have been busy.
+// While one that did not answer explains a failure, or whose values have stopped, it is asked again: it may only have been
+// busy, or have nothing to tell.
 void PlanningStep::ask_again() {
   for (const RuleId rule : planned_) {
     const std::size_t failure = causes_.index_of(rule);
@@ -325,7 +326,8 @@ void PlanningStep::ask_again() {
     if (has_choice_[failure] || !cause || causes_[*cause].kind != CauseNode::Kind::kTrouble)
       continue;
     const ComponentId component = causes_[*cause].component;
-    if (is_to_be_asked_again(component, knowledge_)) asks_[failure].push_back(component);
+    if (is_to_be_asked(component, *found_.troubles()[component.index], knowledge_))
+      asks_[failure].push_back(component);
   }
 }
 

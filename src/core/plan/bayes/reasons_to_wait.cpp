@@ -104,8 +104,9 @@ bool ReasonsToWait::exclude_unproven(WeighedCandidate& weighed, double chance) c
   const RuleId rule = causes_[weighed.failure].rule;
   const auto awaiting = found_.awaited().of(rule);
   if (!awaiting) return false;
-  const bool need_not_wait =
-      chance >= kSure && !takes_down(knowledge_.rules[weighed.candidate.strategy]);
+  const bool is_own_window = awaiting->because == rule && !awaiting->component;
+  const bool need_not_wait = chance >= kSure && !is_own_window &&
+                             !takes_down(knowledge_.rules[weighed.candidate.strategy]);
   const Coupling coupling = knowledge_.couplings.of(awaiting->because, rule);
   const bool is_coupled =
       awaiting->because == rule || (awaiting->is_echo ? coupling.clears(Coupling::kUsual)
@@ -263,12 +264,14 @@ bool ReasonsToWait::exclude_effect(WeighedCandidate& weighed) const {
     return true;
   }
   // In a feedback loop the members take turns, whichever is the likelier; a likelier one that has not
-  // fired yet is waited for.
+  // fired yet is waited for, and the first for a moment.
   for (const std::size_t j : causes_.loops()[causes_.loop_of(weighed.failure)]) {
     const bool is_likelier = parts(diagnosis_.of(j)) > parts(diagnosis_.of(weighed.failure));
-    const bool comes_next =
-        causes_[j].kind == CauseNode::Kind::kImminent || is_held_for_a_moment(j);
-    if (!comes_next || !is_likelier) continue;
+    const bool is_first = causes_[j].first_onset < causes_[weighed.failure].first_onset;
+    const bool comes_next = causes_[j].kind == CauseNode::Kind::kImminent
+                                ? is_likelier
+                                : (is_likelier || is_first) && is_held_for_a_moment(j);
+    if (!comes_next) continue;
     exclude_for(weighed, j);
     return true;
   }

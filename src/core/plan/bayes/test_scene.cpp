@@ -42,6 +42,13 @@ Scene& Scene::fail(const std::string& name, Duration delay) {
   return *this;
 }
 
+Scene& Scene::see_working(const std::string& name) {
+  Detection& detection = knowledge_->states.state(rule(name)).detection;
+  detection.trigger = Slot::of(false);
+  detection.last_false = knowledge_->now;
+  return *this;
+}
+
 Scene& Scene::attempt(const std::string& name, Attempt::Stage stage) {
   const StrategyId id = strategy(name);
   const RuleId owner = (*rules_)[id].rule;

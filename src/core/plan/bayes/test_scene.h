@@ -19,6 +19,8 @@ class Scene {
   Scene& link(const std::string& producer, const std::string& consumer);
   // The rule's failure was detected `delay` after the scene's beginning.
   Scene& fail(const std::string& rule, Duration delay = {});
+  // Its trigger is false, and shows that its function works.
+  Scene& see_working(const std::string& rule);
   // Its strategy is under way, in this stage.
   Scene& attempt(const std::string& strategy, Attempt::Stage stage = Attempt::Stage::kAdapting);
   // It is there, and all was tried in vain.
