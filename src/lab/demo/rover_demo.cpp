@@ -1,6 +1,7 @@
 #include "demo/rover_demo.h"
 
 #include <algorithm>
+#include <fstream>
 #include <stdlib.h>
 #include <system_error>
 
@@ -18,14 +19,34 @@ using namespace std::chrono_literals;
 
 constexpr Duration kRoverComesUp = 120s;
 constexpr const char* kProgram = "rover-node";
+constexpr const char* kStray = "stray_";  // begins the names of processes that only a fault starts
+constexpr const char* kRespawned = "imu_driver";  // as rover.rules declares it
 
 std::string launches(bool has_robot) {
   std::string text;
   for (const rover::Process& process : rover::processes()) {
-    if (!process.is_robot || has_robot)
-      text += fmt::format("COMPONENT {0} LAUNCH \"rover-node {0}\"\n", process.name);
+    const bool is_started = has_robot || process.name == kRespawned;
+    if (!process.is_robot || is_started)
+      text += fmt::format("COMPONENT {0} LAUNCH \"{1} {0}\"\n", process.name, kProgram);
+  }
+  for (const rover::Fault& fault : rover::faults()) {
+    if (fault.way == rover::Way::kStray)
+      text += fmt::format("COMPONENT {0}{1} LAUNCH \"{2} {1}\"\n", kStray, fault.process, kProgram);
   }
   return text;
+}
+
+// As the installation of a package with components does. culprit loads none that the container could not find.
+Expected<void> register_plugins(const std::filesystem::path& prefix) {
+  const auto index = prefix / "share/ament_index/resource_index/rclcpp_components";
+  std::error_code error;
+  std::filesystem::create_directories(index, error);
+  if (!(std::ofstream(index / "rover") << "rover::CameraDriver;rover\nrover::CloudMaker;rover\n"))
+    return Error{"cannot write in " + index.string()};
+  const char* others = std::getenv("AMENT_PREFIX_PATH");
+  const std::string all = prefix.string() + (others != nullptr ? std::string(":") + others : "");
+  setenv("AMENT_PREFIX_PATH", all.c_str(), 1);
+  return {};
 }
 
 }  // namespace
@@ -55,7 +76,9 @@ RoverDemo::RoverDemo(Options options, const std::atomic<bool>& stop, ros2::Domai
 RoverDemo::~RoverDemo() {
   is_over_ = true;
   if (session_) session_->leave();
-  if (thread_.joinable()) thread_.join();
+  for (std::thread* each : {&thread_, &respawner_}) {
+    if (each->joinable()) each->join();
+  }
   experiment_.reset();
   if (session_) session_->supervisor().stop_all();
   if (processes_) processes_->stop_all();
@@ -75,6 +98,7 @@ const char* RoverDemo::rule_text() { return kRoverRules; }
 Expected<void> RoverDemo::open() {
   setenv("ROVER_SEED", std::to_string(options_.seed).c_str(), 1);
   setenv("ROVER_STATE", state_.c_str(), 1);
+  if (auto registered = register_plugins(state_); !registered) return registered;
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
   auto experiment = rover::Experiment::start(*participant, state_);
@@ -82,12 +106,14 @@ Expected<void> RoverDemo::open() {
   experiment_ = std::move(*experiment);
   processes_ = std::make_unique<owners::Supervisor>(rules_of_processes_, demo_processes(state_),
                                                     processes_inbox_);
-  start_all(*processes_, rules_of_processes_);
+  for (std::size_t c = 0; c < rules_of_processes_.components.size(); ++c) {
+    if (!rules_of_processes_.components[c].name.starts_with(kStray))
+      processes_->start({}, ComponentId(c));
+  }
   if (options_.manager == Manager::kCulprit) {
     if (auto opened = open_session(*participant); !opened) return opened;
-  } else if (options_.manager == Manager::kRespawn) {
-    thread_ = std::thread([this] { respawn(); });
   }
+  respawner_ = std::thread([this] { respawn(); });
   if (wait_until_well({}, kRoverComesUp)) return {};
   if (stop_) return Error{"interrupted"};
   return Error{"the rover does not come up: " + experiment_->measure().complaint +
@@ -99,6 +125,7 @@ Expected<void> RoverDemo::open_session(const ros2::ParticipantOptions& participa
   robot.link.participant = participant;
   robot.supervisor = demo_processes(state_);
   how_ = demo_session("rover.rules", std::move(robot), options_.planner, state_);
+  how_.launches = true;  // as the launch file that has the container load its components
   auto opened = live::LiveSession::open({.options = how_,
                                          .records = false,
                                          .lease = {},
@@ -121,6 +148,8 @@ void RoverDemo::respawn() {
   for (; !is_over_; std::this_thread::sleep_for(100ms)) {
     for (std::size_t c = 0; c < missing.size(); ++c) {
       const std::string& name = rules_of_processes_.components[c].name;
+      const bool is_kept = options_.manager == Manager::kRespawn && !name.starts_with(kStray);
+      if (!is_kept && name != kRespawned) continue;
       if (!processes_of(kProgram, name, domain()).empty()) {
         missing[c] = kNever;
       } else if (missing[c] == kNever) {
@@ -179,13 +208,26 @@ Expected<void> RoverDemo::inject(const std::string& fault) {
 
 Expected<void> RoverDemo::inject(const rover::Play& play) {
   for (const rover::Fault* fault : play.faults) {
+    if (fault->way == rover::Way::kStray) {
+      processes_->start({}, stray(fault->process));
+      continue;
+    }
     if (auto injected = experiment_->inject(*fault); !injected)
       return Error{fault->name + ": " + injected.error()};
   }
   return {};
 }
 
+ComponentId RoverDemo::stray(const std::string& process) const {
+  const auto& all = rules_of_processes_.components;
+  const auto found = std::ranges::find(all, kStray + process, &Component::name);
+  return ComponentId(static_cast<std::size_t>(found - all.begin()));
+}
+
 Expected<void> RoverDemo::clear_faults() {
+  for (const rover::Fault& fault : rover::faults()) {
+    if (fault.way == rover::Way::kStray) processes_->withdraw(stray(fault.process));
+  }
   experiment_->clear();
   return {};
 }
@@ -229,7 +271,7 @@ Expected<PlayOutcome> RoverDemo::play(const rover::Play& play, Duration patience
     outcome.complaint =
         measured.complaint.empty() ? "the fault is still there" : measured.complaint;
   }
-  experiment_->clear();
+  (void)clear_faults();
   return outcome;
 }
 

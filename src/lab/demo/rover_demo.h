@@ -26,7 +26,7 @@ class RoverDemo : private live::Listener {
   // The manager that keeps the rover working, besides Nav2's lifecycle managers, which are always there.
   enum class Manager : std::uint8_t {
     kNone,
-    kRespawn,  // a process that exits is started again after 2 s
+    kRespawn,  // each process that exits is started again after 2 s
     kCulprit
   };
 
@@ -74,6 +74,7 @@ class RoverDemo : private live::Listener {
   Expected<void> inject(const rover::Play& play);
   Expected<void> open_session(const ros2::ParticipantOptions& participant);
   void respawn();
+  ComponentId stray(const std::string& process) const;
   void on_event(const Event& event, const RuleSet& rules, Time start) override;
   // Gives when the rover was well, and stayed so for a moment. `faults` must be over, too.
   std::optional<Time> wait_until_well(const std::vector<const rover::Fault*>& faults,
@@ -87,7 +88,7 @@ class RoverDemo : private live::Listener {
   bool keeps_state_ = false;
   std::atomic<bool> is_over_ = false;
 
-  // World and mission, and without culprit the robot, too.
+  // World, mission and a respawned process; without culprit the whole robot; and faults.
   RuleSet rules_of_processes_;
   Inbox processes_inbox_;
   std::unique_ptr<owners::Supervisor> processes_;
@@ -99,7 +100,8 @@ class RoverDemo : private live::Listener {
   mutable Mutex mutex_;
   std::optional<Episode> episode_ CULPRIT_GUARDED_BY(mutex_);
 
-  std::thread thread_;  // runs the session, or respawns
+  std::thread thread_;     // runs the session
+  std::thread respawner_;  // of a process that rover.rules declares so; as a manager, of all
 };
 
 }  // namespace culprit::lab

@@ -339,10 +339,13 @@ std::vector<RcaCase> sunset_cases(std::uint64_t seed, std::size_t of_each, Fault
 }
 
 std::vector<RcaCase> rover_cases(std::uint64_t seed, std::size_t of_each, Faults faults) {
-  return cases_of(rover::faults().size(), seed, of_each, faults,
-                  [](std::size_t i, std::uint64_t own_seed) {
-                    return rover_exemplar(rover::faults()[i], own_seed);
-                  });
+  std::vector<const rover::Fault*> all;  // without a stranger's, for which no component is to blame
+  for (const rover::Fault& fault : rover::faults()) {
+    if (!fault.cause.empty()) all.push_back(&fault);
+  }
+  return cases_of(all.size(), seed, of_each, faults, [&](std::size_t i, std::uint64_t own_seed) {
+    return rover_exemplar(*all[i], own_seed);
+  });
 }
 
 }  // namespace culprit::study

@@ -52,7 +52,9 @@ int right_of(const rover::Play& play, const std::vector<std::string>& names) {
 RoverResult play(const RuleSet& rules, const rover::Play& play, const std::string& manager,
                  Duration watched, const std::function<void(const Event&)>& on_event) {
   simulation::Random random(play.seed);
-  RoverModel model(rules, {.seed = play.seed, .has_bonds = manager != "none"});
+  const bool is_culprit = manager == "bayes" || manager == "paper" || manager == "oracle";
+  RoverModel model(rules,
+                   {.seed = play.seed, .has_bonds = manager != "none", .withdraws = is_culprit});
   const Time at = Time{RoverTimes::kWarmUp + from_seconds(random.uniform(0, 5))};
   const auto system = manager_of(manager, rules, play, at);
   std::optional<lab::Episode> episode;

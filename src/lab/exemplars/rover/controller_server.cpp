@@ -39,7 +39,7 @@ class ControllerServer final : public RoverNode {
     });
     join(action_);
     every(100ms, [this] { control(); });
-    if (!has_costmap_) has_costmap_ = costmap_.open(node().context()).has_value();
+    join(costmap_);
   }
   Expected<void> on_activate() override {
     costmap_.activate();
@@ -61,7 +61,7 @@ class ControllerServer final : public RoverNode {
     std::vector<Pose2> points;
     for (const Pose2& each : obstacles_)
       points.push_back({each.x - corner.x, each.y - corner.y, 0});
-    auto grid = draw_costs(CostGrid(window, points), 0, 0, kCells, kCells);
+    auto grid = draw_costs(CostGrid(window, points), kCells, kCells);
     grid.header.frame_id = "odom";
     grid.info.origin.position = {corner.x, corner.y, 0};
     return grid;
@@ -127,7 +127,6 @@ class ControllerServer final : public RoverNode {
   SteadyTime moved_{};
   Pose2 progress_;  // where it last moved
   double side_ = 1.2;
-  bool has_costmap_ = false;
   Costmap costmap_{"local_costmap", 500ms, [this] { return draw(); }};
   ActionServer<act::FollowPath> action_{"/follow_path",
                                         [this](const auto& goal) { return accept(goal); }};

@@ -18,8 +18,10 @@ class Costmap {
           std::function<std::optional<msg::OccupancyGrid>()> draw)
       : name_(std::move(name)), period_(period), draw_(std::move(draw)) {}
 
-  Expected<void> open(ros2::Context& context) {
-    auto made = ros2::LifecycleNode::create(context, {"/" + name_, name_}, {});
+  // Once: it is there from the first configuring of the server on.
+  Expected<void> open(ros2::Node& server) {
+    if (node_) return {};
+    auto made = ros2::LifecycleNode::create(server.context(), {"/" + name_, name_}, {});
     if (!made) return Error{made.error()};
     node_ = std::move(*made);
     auto grid = node_->node().create_publisher<msg::OccupancyGrid>(
@@ -50,18 +52,14 @@ class Costmap {
 };
 
 // The costs of a window of cells, as a costmap shows them.
-inline msg::OccupancyGrid draw_costs(const CostGrid& costs, int column, int row, int width,
-                                     int height) {
+inline msg::OccupancyGrid draw_costs(const CostGrid& costs, int width, int height) {
   msg::OccupancyGrid grid;
   grid.header = header_now("map");
   grid.info.resolution = static_cast<float>(GridMap::kResolution);
   grid.info.width = static_cast<std::uint32_t>(width);
   grid.info.height = static_cast<std::uint32_t>(height);
-  grid.info.origin.position = {column * GridMap::kResolution, row * GridMap::kResolution, 0};
-  for (int r = row; r < row + height; ++r) {
-    for (int c = column; c < column + width; ++c)
-      grid.data.push_back(static_cast<std::int8_t>(costs.at(c, r)));
-  }
+  for (int i = 0; i < width * height; ++i)
+    grid.data.push_back(static_cast<std::int8_t>(costs.at(i % width, i / width)));
   return grid;
 }
 

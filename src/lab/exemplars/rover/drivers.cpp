@@ -90,8 +90,8 @@ class ImuDriver final : public RoverNode {
 // base_driver: drives as /cmd_vel says, and stops if nothing came for 0.5 s. Integrates the wheels' encoders: /odom and
 // odom -> base_link on /tf, 20 Hz. base_link -> laser on /tf_static. Passes on /battery_state. Without the parameter motor_power it stands, and senses.
 //
-// Faults: "odom_frozen" (encoders read zero), "tf_stopped", "tf_late" (stamps 3 s old), "stall" (obeys no command),
-// "slip" (the wheels turn, but the rover does not drive forward).
+// Faults: "odom_frozen" (encoders read zero), "tf_stopped", "tf_late" (stamps 3 s old), "clock_jump" (an hour),
+// "stall" (obeys no command), "slip" (the wheels turn, but the rover does not drive forward).
 class BaseDriver final : public RoverNode {
  public:
   explicit BaseDriver(Settings settings)
@@ -127,14 +127,14 @@ class BaseDriver final : public RoverNode {
     pose_ = moved(pose_, twist.linear.x, twist.angular.z, 0.05);
     msg::Header header = header_now("odom");
     if (has("tf_late")) header.stamp.sec -= 3;
+    if (has("clock_jump")) header.stamp.sec -= 3600;
     msg::Odometry odom;
     odom.header = header;
     odom.child_frame_id = "base_link";
     odom.pose.pose = to_message(pose_);
     odom.twist.twist = twist;
     odom_->publish(odom);
-    if (!has("tf_stopped"))
-      tf_->publish({{{header, "base_link", {{pose_.x, pose_.y, 0}, quaternion(pose_.yaw)}}}});
+    if (!has("tf_stopped")) tf_->publish(to_tf(header, "base_link", pose_));
   }
 
   Pose2 pose_;
@@ -148,10 +148,31 @@ class BaseDriver final : public RoverNode {
   std::optional<ros2::Publisher<msg::BatteryState>> battery_;
 };
 
+// ekf: no part of the robot. Somebody forgot to stop this filter: it publishes odom -> base_link, too, from where it started.
+class Ekf final : public RoverNode {
+ public:
+  using RoverNode::RoverNode;
+
+ private:
+  void set_up() override {
+    offer(tf_, "/tf", {.depth = 100});
+    hear<msg::Odometry>("/hardware/wheels", ros2::qos::kSensorData,
+                        [this](const msg::Odometry& wheels) {
+                          const msg::Twist& twist = wheels.twist.twist;
+                          pose_ = moved(pose_, twist.linear.x, twist.angular.z, 0.05);
+                          tf_->publish(to_tf(header_now("odom"), "base_link", pose_));
+                        });
+  }
+
+  Pose2 pose_;
+  std::optional<ros2::Publisher<msg::TFMessage>> tf_;
+};
+
 }  // namespace
 
+const Process kEkf = {"ekf", make<Ekf>, false};
 const Process kLidarDriver = {"lidar_driver", make<LidarDriver>};
-const Process kCameraDriver = {"camera_driver", make<CameraDriver>};
+const Process kCameraDriver = {"camera_driver", make<CameraDriver>, true, true};
 const Process kImuDriver = {"imu_driver", make<ImuDriver>};
 const Process kBaseDriver = {"base_driver", make<BaseDriver>};
 

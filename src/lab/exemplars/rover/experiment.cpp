@@ -15,8 +15,8 @@ namespace culprit::rover {
 namespace {
 
 // Blocks until the call has ended.
-template <class T, class Begin>
-Expected<T> answer_to(Begin begin) {
+template <class T>
+Expected<T> answer_to(auto begin) {
   return sunset::ask<T>(begin).get();
 }
 
@@ -177,6 +177,7 @@ bool Experiment::is_over(const Fault& fault) {
     return state && *state == LifecycleState::kActive;
   }
   const auto pids = processes_of("rover-node", fault.process, participant_.domain);
+  if (fault.way == Way::kStray) return pids.size() < 2 && fault.process != kEkf.name;
   return std::ranges::any_of(pids, [](int pid) { return !is_stopped(pid); });
 }
 

@@ -28,7 +28,7 @@ class Experiment {
                                                      std::filesystem::path state);
   ~Experiment();
 
-  // Blocks until the node has answered. An error: the fault is not in place, or we cannot tell.
+  // @pre not Way::kStray. Blocks until the node has answered. An error: the fault is not in place, or we cannot tell.
   Expected<void> inject(const Fault& fault);
   // Whether the fault itself is over, whatever became of its effects. Blocks.
   bool is_over(const Fault& fault);

@@ -18,34 +18,34 @@ Fault shown(const std::string& process, const std::string& fault, std::string re
           std::move(remedies)};
 }
 
+// A fault of a process, such as "kill:amcl".
+Fault done_to(const char* process, Way way, const char* prefix, std::string remedies) {
+  const std::string component = component_of(process);
+  return {prefix + component, way, process, "", {}, component, std::move(remedies)};
+}
+
 std::vector<Fault> make_faults() {
   std::vector<Fault> all;
   for (const char* process :
-       {"lidar_driver", "camera_driver", "imu_driver", "base_driver", "map_server", "amcl",
+       {"lidar_driver", "perception_container", "imu_driver", "base_driver", "map_server", "amcl",
         "planner_server", "controller_server", "behavior_server", "velocity_smoother",
-        "bt_navigator", "twist_mux", "e_stop", "lifecycle_manager_navigation"}) {
-    const std::string component = component_of(process);
-    all.push_back({"kill:" + component, Way::kKill, process, "", {}, component, "redeploy"});
-  }
+        "bt_navigator", "twist_mux", "e_stop", "lifecycle_manager_navigation"})
+    all.push_back(done_to(process, Way::kKill, "kill:", "redeploy"));
   for (const char* process : {"lidar_driver", "base_driver", "amcl", "planner_server",
-                              "controller_server", "bt_navigator", "twist_mux"}) {
-    const std::string component = component_of(process);
-    all.push_back({"stop:" + component, Way::kStop, process, "", {}, component, "redeploy"});
-  }
+                              "controller_server", "bt_navigator", "twist_mux"})
+    all.push_back(done_to(process, Way::kStop, "stop:", "redeploy"));
   for (const char* process : {"amcl", "controller_server", "velocity_smoother", "bt_navigator"})
-    all.push_back({"deactivate:" + std::string(process),
-                   Way::kDeactivate,
-                   process,
-                   "",
-                   {},
-                   process,
-                   "start_group, activate"});
+    all.push_back(done_to(process, Way::kDeactivate, "deactivate:", "start_group, activate"));
+  for (const char* process : {"lidar_driver", "base_driver"})
+    all.push_back(done_to(process, Way::kStray, "stray:", "end one of the two"));
+  all.push_back({"stray:ekf", Way::kStray, "ekf", "", {}, "", ""});
   for (const char* fault : {"stall", "zeros", "nan", "frozen", "slow", "wrong_frame", "hang"})
     all.push_back(shown("lidar_driver", fault, "redeploy"));
   for (const char* fault : {"stall", "dark", "dim", "leak"})
     all.push_back(shown("camera_driver", fault, "redeploy"));
+  all.push_back(shown("cloud_maker", "stall", "redeploy"));
   for (const char* fault : {"stall", "bias"}) all.push_back(shown("imu_driver", fault, "redeploy"));
-  for (const char* fault : {"odom_frozen", "tf_stopped", "tf_late", "crash", "slip"})
+  for (const char* fault : {"odom_frozen", "tf_stopped", "tf_late", "clock_jump", "crash", "slip"})
     all.push_back(shown("base_driver", fault, "redeploy"));
   for (const char* fault : {"stall", "tf_stopped"})
     all.push_back(shown("amcl", fault, "restart, redeploy"));
@@ -59,8 +59,8 @@ std::vector<Fault> make_faults() {
                  "max_speed", Value(0.1), "controller_server", "redeploy, then set_parameter"});
   all.push_back({"imu:busy", Way::kNextStart, "imu_driver", "busy_s", Value(8.0), "imu",
                  "redeploy, again and again"});
-  all.push_back({"camera:slow_start", Way::kNextStart, "camera_driver", "start_s", Value(8.0),
-                 "camera", "redeploy"});
+  all.push_back({"perception_container:slow_start", Way::kNextStart, "perception_container",
+                 "start_s", Value(8.0), "perception_container", "redeploy"});
   all.push_back({"controller_server:slow_setting", Way::kParameter, "controller_server",
                  "max_speed", Value(0.05), "controller_server", "set_parameter, redeploy"});
   all.push_back({"kidnapped", Way::kParameter, "world", "kidnap", Value("10 5.9 1"), "amcl",

@@ -12,11 +12,12 @@
 namespace culprit::rover {
 
 enum class Way : std::uint8_t {
-  kKill,       // SIGKILL
-  kStop,       // SIGSTOP
-  kNextStart,  // SIGKILL, and the next process starts with `parameter` (rover_node_main.cpp)
-  kParameter,  // a parameter of the node
-  kDeactivate  // somebody deactivates the node
+  kKill,        // SIGKILL
+  kStop,        // SIGSTOP
+  kNextStart,   // SIGKILL, and the next process starts with `parameter` (rover_node_main.cpp)
+  kParameter,   // a parameter of the node
+  kDeactivate,  // somebody deactivates the node
+  kStray        // somebody starts one more process of that name
 };
 
 struct Fault {
@@ -25,7 +26,7 @@ struct Fault {
   std::string process{};    // where it is injected (nodes.h)
   std::string parameter{};  // kParameter, kNextStart
   Value value{};            // of the parameter; a double for kNextStart
-  std::string cause{};      // the component of rover.rules that is responsible
+  std::string cause{};      // the component of rover.rules that is responsible; empty: none
   std::string remedies{};   // for people; empty: nothing but a person mends it
   bool is_fixable() const { return !remedies.empty(); }
 };

@@ -66,4 +66,8 @@ inline msg::Header header_now(std::string frame) {
   return {ros2::msg::to_time(std::chrono::system_clock::now()), std::move(frame)};
 }
 
+inline msg::TFMessage to_tf(msg::Header header, std::string child, const Pose2& pose) {
+  return {{{std::move(header), std::move(child), {{pose.x, pose.y, 0}, quaternion(pose.yaw)}}}};
+}
+
 }  // namespace culprit::rover

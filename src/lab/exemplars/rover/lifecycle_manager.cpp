@@ -1,6 +1,5 @@
 // The manager runs on a thread of its own, which blocks in its requests; its node answers meanwhile.
 #include <atomic>
-#include <deque>
 #include <future>
 #include <memory>
 #include <optional>
@@ -119,8 +118,8 @@ class LifecycleManager {
     manager.begin(live_now());
     for (;; std::this_thread::sleep_for(manager.is_changing() ? 10ms : 100ms)) {
       for (std::size_t s = 0; s < servers_.size(); ++s) manager.on_bond(s, servers_[s]->heard());
-      while (const auto request = next_request()) {
-        manager.ask(request->command, [answer = request->answer](bool is_done) {
+      for (const Request& request : take_requests()) {
+        manager.ask(request.command, [answer = request.answer](bool is_done) {
           answer(ros2::encode(srv::ManageLifecycleNodes::Response{is_done}));
         });
       }
@@ -137,12 +136,9 @@ class LifecycleManager {
     ros2::ServiceServer::Answer answer;
   };
 
-  std::optional<Request> next_request() {
+  std::vector<Request> take_requests() {
     const MutexLock lock(mutex_);
-    if (requests_.empty()) return std::nullopt;
-    Request next = std::move(requests_.front());
-    requests_.pop_front();
-    return next;
+    return std::exchange(requests_, {});
   }
 
   bool change(Server& server, Transition transition) {
@@ -161,7 +157,7 @@ class LifecycleManager {
   std::unique_ptr<ros2::Subscription> bonds_;
   std::unique_ptr<ros2::ServiceServer> manage_;
   Mutex mutex_;
-  std::deque<Request> requests_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<Request> requests_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 }  // namespace

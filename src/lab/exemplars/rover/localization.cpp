@@ -86,10 +86,7 @@ class Amcl final : public RoverNode {
   void publish(const Pose2& odom) {
     const ParticleFilter::Estimate& here = filter_->estimate();
     const Pose2 correction = here.pose * inverse(*at_);
-    if (!has("tf_stopped"))
-      tf_out_->publish({{{header_now("map"),
-                          "odom",
-                          {{correction.x, correction.y, 0}, quaternion(correction.yaw)}}}});
+    if (!has("tf_stopped")) tf_out_->publish(to_tf(header_now("map"), "odom", correction));
     msg::PoseWithCovarianceStamped pose;
     pose.header = header_now("map");
     pose.pose.pose = to_message(correction * odom);

@@ -87,6 +87,34 @@ struct Imu {
   }
 };
 
+struct PointField {
+  static constexpr std::string_view kType = "sensor_msgs/msg/PointField";
+  std::string name{};
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = 7;  // float32
+  std::uint32_t count = 1;
+  static void visit(auto& self, auto& each) {
+    each(self.name, self.offset, self.datatype, self.count);
+  }
+};
+
+struct PointCloud2 {
+  static constexpr std::string_view kType = "sensor_msgs/msg/PointCloud2";
+  Header header;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::vector<PointField> fields;
+  bool is_bigendian = false;
+  std::uint32_t point_step = 12;
+  std::uint32_t row_step = 0;
+  std::vector<std::uint8_t> data;
+  bool is_dense = true;
+  static void visit(auto& self, auto& each) {
+    each(self.header, self.height, self.width, self.fields, self.is_bigendian, self.point_step,
+         self.row_step, self.data, self.is_dense);
+  }
+};
+
 struct BatteryState {
   static constexpr std::string_view kType = "sensor_msgs/msg/BatteryState";
   Header header;

@@ -1,27 +1,18 @@
 #include "exemplars/rover/nodes.h"
 
 #include <algorithm>
+#include <array>
 
 namespace culprit::rover {
 
 std::span<const Process> processes() {
-  static const Process kAll[] = {kWorld,
-                                 kLidarDriver,
-                                 kCameraDriver,
-                                 kImuDriver,
-                                 kBaseDriver,
-                                 kMapServer,
-                                 kAmcl,
-                                 kPlannerServer,
-                                 kControllerServer,
-                                 kBehaviorServer,
-                                 kVelocitySmoother,
-                                 kBtNavigator,
-                                 kTwistMux,
-                                 kEStop,
-                                 {"lifecycle_manager_localization", nullptr},
-                                 {"lifecycle_manager_navigation", nullptr},
-                                 kMission};
+  static const Process kLocalizer = {"lifecycle_manager_localization", nullptr};
+  static const Process kNavigator = {"lifecycle_manager_navigation", nullptr};
+  const auto list = [](const auto&... all) { return std::array{all...}; };
+  static const std::array kAll =
+      list(kWorld, kLidarDriver, kPerceptionContainer, kCameraDriver, kCloudMaker, kImuDriver,
+           kBaseDriver, kMapServer, kAmcl, kPlannerServer, kControllerServer, kBehaviorServer,
+           kVelocitySmoother, kBtNavigator, kTwistMux, kEStop, kLocalizer, kNavigator, kMission);
   return kAll;
 }
 

@@ -1,6 +1,7 @@
 // The processes of the rover: `rover-node NAME` runs one of them.
 //
 //   world ─ hardware ─> lidar_driver, camera_driver, imu_driver, base_driver
+//   camera_driver ─> cloud_maker, both in perception_container
 //   map_server, lidar_driver ─> amcl ─> /tf ─> planner_server, controller_server
 //   bt_navigator ─ actions ─> planner_server, controller_server, behavior_server
 //   controller_server, behavior_server ─> velocity_smoother ─> twist_mux ─> base_driver
@@ -21,6 +22,7 @@ struct Process {
   std::string_view name;
   std::unique_ptr<RoverNode> (*make)(Settings);  // null: a lifecycle manager
   bool is_robot = true;
+  bool is_composed = false;  // loaded by perception_container; without culprit on its own
 };
 
 template <class Node>
@@ -29,11 +31,13 @@ std::unique_ptr<RoverNode> make(Settings settings) {
 }
 
 extern const Process kWorld, kMission;
+extern const Process kEkf;  // a fault
 extern const Process kLidarDriver, kCameraDriver, kImuDriver, kBaseDriver, kMapServer, kAmcl;
+extern const Process kPerceptionContainer, kCloudMaker;
 extern const Process kPlannerServer, kControllerServer, kBehaviorServer, kBtNavigator;
 extern const Process kVelocitySmoother, kTwistMux, kEStop;
 
-// In the order in which they are started.
+// In the order in which they are started; without kEkf.
 std::span<const Process> processes();
 
 // The servers of the lifecycle managers, in the order of start-up.

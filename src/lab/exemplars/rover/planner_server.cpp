@@ -31,10 +31,8 @@ class PlannerServer final : public RoverNode {
     });
     join(action_);
     offer(plan_, "/plan");
-    if (!has_costmap_) join_costmap();
+    join(costmap_);
   }
-  // It is there from the first configuring on.
-  void join_costmap() { has_costmap_ = costmap_.open(node().context()).has_value(); }
   Expected<void> on_activate() override {
     costmap_.activate();
     return {};
@@ -46,7 +44,7 @@ class PlannerServer final : public RoverNode {
 
   std::optional<msg::OccupancyGrid> draw() {
     if (!costs_ || has("costmap_frozen")) return std::nullopt;
-    return draw_costs(*costs_, 0, 0, map_->width(), map_->height());
+    return draw_costs(*costs_, map_->width(), map_->height());
   }
 
   bool accept(const act::ComputePathToPose::Goal& goal) {
@@ -72,7 +70,6 @@ class PlannerServer final : public RoverNode {
   std::optional<GridMap> map_;
   std::optional<CostGrid> costs_;
   int scans_ = 0;
-  bool has_costmap_ = false;
   Costmap costmap_{"global_costmap", 1s, [this] { return draw(); }};
   ActionServer<act::ComputePathToPose> action_{"/compute_path_to_pose",
                                                [this](const auto& goal) { return accept(goal); }};

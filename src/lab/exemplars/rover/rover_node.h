@@ -44,6 +44,7 @@ class RoverNode {
   virtual ~RoverNode();
   // The context outlives the node.
   Expected<void> open(ros2::Context& context);
+  const std::string& full_name() const { return settings_.node; }
 
  protected:
   ros2::Node& node() { return managed_ ? managed_->node() : *plain_; }
@@ -78,11 +79,10 @@ class RoverNode {
     if (auto made = note(node().create_service<Service>(name, std::move(handler))))
       services_.push_back(std::move(*made));
   }
-  // An action's server or client.
+  // An action's server or client, a costmap.
   template <class Part>
   void join(Part& part) {
-    if (const auto opened = part.open(node()); !opened && trouble_.empty())
-      trouble_ = opened.error();
+    (void)note(part.open(node()));
   }
   void every(Duration period, std::function<void()> callback);
 

@@ -62,8 +62,10 @@ int run(const Process& process, const Settings& settings) {
 }
 
 int main(int argc, char** argv) {
+  std::vector<Process> known(processes().begin(), processes().end());
+  known.push_back(kEkf);
   std::vector<std::string> names;
-  for (const Process& each : processes()) names.emplace_back(each.name);
+  for (const Process& each : known) names.emplace_back(each.name);
   const NodeCommandLine line{.about = "One process of the rover, a robot in Nav2's shape.",
                              .names = names,
                              .environment = "ROVER",
@@ -79,7 +81,7 @@ int main(int argc, char** argv) {
   Settings settings{
       .node = node, .is_managed = is_server(node), .seed = given->seed, .state = given->option};
   if (auto obeyed = obey_experiment(given->name, settings); !obeyed) return fail(obeyed.error());
-  return run(*std::ranges::find_if(processes(), is_it), settings);
+  return run(*std::ranges::find_if(known, is_it), settings);
 }
 
 }  // namespace

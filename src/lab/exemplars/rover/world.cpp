@@ -61,11 +61,8 @@ void World::walk(double dt) {
     const Pose2 next = moved(person, kWalk, 0, dt);
     const bool sees_robot =
         distance(next, robot_) < kKeepsAway && distance(next, robot_) < distance(person, robot_);
-    if (sees_robot || next.x < 1 || next.x > 11) {
-      person.yaw = normalized(person.yaw + std::numbers::pi);
-    } else {
-      person = next;
-    }
+    const bool turns = sees_robot || next.x < 1 || next.x > 11;
+    person = turns ? Pose2{person.x, person.y, normalized(person.yaw + std::numbers::pi)} : next;
   }
 }
 

@@ -21,6 +21,7 @@ constexpr double kLeak = 20;    // MB a second (rover_node.h)
 void RoverModel::tick() {
   drive();
   sense();
+  disturb();
   localize();
   show_costmaps();
   beat();
@@ -39,7 +40,8 @@ void RoverModel::tell_signals(const std::string& source, const Value& value) {
 }
 
 void RoverModel::publish(std::string_view component, const char* topic, const Fields& fields) {
-  const ComponentId id = ids_.find(component)->second;
+  const auto found = ids_.find(component);  // a stray process is no component
+  const ComponentId id = found != ids_.end() ? found->second : ComponentId(parts_.size());
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
     const Topic& each = rules_.topics[t];
     if (each.name == topic && each.publisher.value_or(id) == id) tell(SampleArrived{TopicId(t), 1});
@@ -120,8 +122,10 @@ void RoverModel::sense() {
   }
   const Part& camera = part("camera");
   const bool is_long = works(camera) && std::get<double>(*camera.parameter("exposure")) > 1;
-  if (works(camera) && camera.fault != "stall" && is_due(camera, is_long ? 2s : 250ms))
+  if (works(camera) && camera.fault != "stall" && is_due(camera, is_long ? 2s : 250ms)) {
     publish("camera", "/camera/image_raw");
+    if (works("cloud_maker") && part("cloud_maker").fault != "stall") ++clouds_;
+  }
   const Part& imu = part("imu");
   if (works(imu) && imu.fault != "stall")
     publish("imu", "/imu",
@@ -129,7 +133,7 @@ void RoverModel::sense() {
   const Part& base = part("base");
   if (!works(base)) return;
   const bool is_frozen = base.fault == "odom_frozen";
-  const bool is_late = base.fault == "tf_late";
+  const bool is_late = base.fault == "tf_late" || base.fault == "clock_jump";
   publish("base", "/odom",
           {{"twist.twist.angular.z", Value(is_frozen ? 0.0 : turn_)},
            {"twist.twist.linear.x", Value(is_frozen ? 0.0 : wheels_)},
@@ -137,6 +141,17 @@ void RoverModel::sense() {
   if (base.fault != "tf_stopped") publish("base", "/tf");
   if (base.fault != "tf_stopped" && !is_late) odometry_ = now_;
   if (is_due(base, 1s)) publish("base", "/battery_state", {{"percentage", Value(charge_)}});
+}
+
+// Processes that somebody started beside the robot's.
+void RoverModel::disturb() {
+  if (strays_.contains("lidar_driver") && is_due(part("lidar"), 100ms)) publish("lidar", "/scan");
+  const bool has_base = strays_.contains("base_driver");
+  if (has_base) publish("base", "/odom");
+  if (has_base) publish("base", "/tf");
+  if (strays_.contains("ekf")) publish("ekf", "/tf");
+  // amcl takes each jump for a motion.
+  if (has_base || strays_.contains("ekf")) pose_error_ = std::max(pose_error_, 2.0);
 }
 
 // amcl, and where it believes to be.
@@ -192,6 +207,9 @@ void RoverModel::beat() {
 void RoverModel::diagnose() {
   const Part& amcl = part("amcl");
   if (works(amcl) && has_map_ && is_due(amcl, 1s)) tell_signals("amcl match", Value(match_));
+  const Part& cloud_maker = part("cloud_maker");
+  if (works(cloud_maker) && is_due(cloud_maker, 1s))
+    tell_signals("cloud_maker clouds", Value(std::exchange(clouds_, 0.0)));
   Part& camera = part("camera");
   if (!works(camera) || !is_due(camera, 1s)) return;
   tell_signals("camera_driver brightness", Value(camera.fault == "dark"  ? 0.0

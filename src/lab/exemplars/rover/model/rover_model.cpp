@@ -23,6 +23,8 @@ constexpr Duration kDiscovery = 300ms;  // until others know a new node
 constexpr Duration kFirstProbe =
     900ms;  // 400 ms between probes, 500 ms for the answer (link/link.cpp)
 constexpr Duration kProbePeriod = 400ms;
+constexpr Duration kRespawns = 2s;  // as launch's respawn_delay in demo/rover_demo.cpp
+constexpr Duration kWithdraws = 1s;
 
 // kill:camera, imu, twist_mux, e_stop heal live in 0.4 to 1.0 s, of which the start takes nearly all.
 constexpr double kStartLeast_s = 0.25;
@@ -36,6 +38,7 @@ constexpr double kServerMost_s = 2.0;
 constexpr std::pair<const char*, const char*> kEndpoints[] = {
     {"lidar", ">/scan"},
     {"camera", ">/camera/image_raw"},
+    {"cloud_maker", ">/points </camera/image_raw"},
     {"imu", ">/imu"},
     {"base", ">/odom >/tf >/battery_state </cmd_vel"},
     {"map_server", ">/map"},
@@ -63,7 +66,10 @@ EndpointKind kind_of(char sign) {
 }  // namespace
 
 RoverModel::RoverModel(const RuleSet& rules, Options options)
-    : rules_(rules), random_(options.seed), trip_(simulation::Random(random_.next()), kTick) {
+    : rules_(rules),
+      withdraws_(options.withdraws),
+      random_(options.seed),
+      trip_(simulation::Random(random_.next())) {
   for (std::size_t s = 0; s < rules.signals.size(); ++s) {
     const auto& source = rules.signals[s].source;
     if (const auto* key = std::get_if<DiagnosticKey>(&source))
@@ -91,24 +97,19 @@ void RoverModel::make_parts() {
       parts_[found->second.index].healed_by_activation.push_back(
           std::get<std::string>(fault.value));
   }
-  defaults("controller_server", "max_speed", 0.5);
-  defaults("base", "motor_power", true);
-  defaults("camera", "exposure", 1.0);
-  defaults("e_stop", "stopped", false);
+  part("controller_server").at_start["max_speed"] = 0.5;
+  part("base").at_start["motor_power"] = true;
+  part("camera").at_start["exposure"] = 1.0;
+  part("e_stop").at_start["stopped"] = false;
   for (std::size_t c = 0; c < parts_.size(); ++c) {
     Part& part = parts_[c];
-    part.start(++last_pid_);
+    start_process(ComponentId(c));
     tell(ProcessSeen{ComponentId(c), ProcessState::kRunning, part.pid, ""});
     appear(ComponentId(c));
     if (!part.is_server) continue;
     change(ComponentId(c), Transition::kConfigure);
     change(ComponentId(c), Transition::kActivate);
   }
-}
-
-// A parameter of the component's new processes.
-void RoverModel::defaults(std::string_view component, const char* name, const Value& value) {
-  part(component).at_start[name] = value;
 }
 
 void RoverModel::make_managers(bool has_bonds) {
@@ -159,9 +160,15 @@ BondManager::Reach RoverModel::reach(const Part& part) const {
                                            : BondManager::Reach::kNobody;
 }
 
+// A component runs in the process of its container, which rover.rules declares before it.
+void RoverModel::start_process(ComponentId id) {
+  const auto container = container_of(id, rules_);
+  parts_[id.index].start(container ? parts_[container->index].pid : ++last_pid_);
+}
+
 void RoverModel::start(ComponentId id) {
   Part& part = parts_[id.index];
-  part.start(++last_pid_);
+  start_process(id);
   part.fault.clear();
   tell(ProcessSeen{id, ProcessState::kRunning, part.pid, ""});
   if (now_ < part.busy_until) {
@@ -206,6 +213,9 @@ void RoverModel::appear(ComponentId id) {
   if (name == "planner_server") has_costs_ = false;
   const auto manager = managers_.find(id);
   if (manager != managers_.end() && now_ > Time{}) manager->second->begin(now_);
+  for (std::size_t c = 0; c < parts_.size(); ++c) {
+    if (container_of(ComponentId(c), rules_) == id && parts_[c].is_gone()) start(ComponentId(c));
+  }
 }
 
 void RoverModel::tell_endpoints(ComponentId id, bool is_there) {
@@ -224,9 +234,16 @@ void RoverModel::lose(ComponentId id, const std::string& remark, Cause cause, bo
   if (!part.end()) return;
   part.is_in_graph = false;
   if (!says_goodbye) part.killed = now_;
-  tell(ProcessSeen{id, ProcessState::kGone, part.pid, remark, cause});
+  const auto container = container_of(id, rules_);
+  if (!container || parts_[container->index].is_gone())
+    tell(ProcessSeen{id, ProcessState::kGone, part.pid, remark, cause});
   tell(NodeVanished{rules_[id].node});
   for (const std::string& other : rules_[id].other_nodes) tell(NodeVanished{other});
+  if (rules_[id].is_respawned) after(kRespawns, [this, id] { start(id); });
+  for (std::size_t c = 0; c < parts_.size(); ++c) {
+    if (container_of(ComponentId(c), rules_) == id)
+      lose(ComponentId(c), remark, cause, says_goodbye);
+  }
 }
 
 bool RoverModel::change(ComponentId id, Transition transition) {
@@ -262,6 +279,16 @@ void RoverModel::inject(const Fault& fault) {
   if (fault.parameter == "lidar_flaps") flaps_since_ = now_;
   if (fault.parameter == "battery") charge_ = std::get<double>(fault.value);
   if (fault.process == "world") return;
+  if (fault.way == Way::kStray) {
+    strays_.insert(fault.process);
+    if (fault.is_fixable()) tell(NamesakesSeen{"/" + fault.process, 1});
+    if (fault.is_fixable() && withdraws_)
+      after(kWithdraws, [this, process = fault.process] {
+        strays_.erase(process);
+        tell(NamesakesSeen{"/" + process, 0});
+      });
+    return;
+  }
   const ComponentId id = ids_.at(fault.cause);
   Part& part = parts_[id.index];
   if (fault.way == Way::kKill) return lose(id, "killed by signal 9", Cause::kFault, false);
@@ -288,6 +315,7 @@ void RoverModel::inject(const Fault& fault) {
 
 bool RoverModel::is_over(const Fault& fault) const {
   if (fault.name == "kidnapped") return pose_error_ < kLostAt;
+  if (fault.way == Way::kStray) return !strays_.contains(fault.process);
   if (fault.parameter == "lidar_plugged") return is_plugged_;
   if (fault.parameter == "lidar_flaps") return flaps_since_ == kNever;
   if (fault.parameter == "battery") return charge_ > std::get<double>(fault.value);
@@ -322,7 +350,7 @@ void RoverModel::execute(const Command& command) {
   if (std::holds_alternative<StopProcess>(command.what)) return stop(command);
   if (std::holds_alternative<StartProcess>(command.what)) {
     return after(kAnswer, [this, id, number = command.id] {
-      if (parts_[id.index].is_gone()) start(id);
+      if (parts_[id.index].is_gone() && !rules_[id].is_respawned) start(id);
       reply(number, Outcome::kDone, Value(std::int64_t{parts_[id.index].pid}));
     });
   }

@@ -35,6 +35,7 @@ class RoverModel : public Robot {
   struct Options {
     std::uint64_t seed = 1;
     bool has_bonds = true;  // bond_timeout of the lifecycle managers is not 0
+    bool withdraws = true;  // a component that runs twice (live/live_robot.h)
   };
 
   // `rules` are those of rules/rover.rules, and must outlive it. All is up, and the rover drives.
@@ -80,13 +81,13 @@ class RoverModel : public Robot {
   // ---- processes
   void make_parts();
   void make_managers(bool has_bonds);
-  void defaults(std::string_view component, const char* name, const Value& value);
   Part& part(std::string_view component) { return parts_[ids_.find(component)->second.index]; }
   const Part& part(std::string_view component) const {
     return parts_[ids_.find(component)->second.index];
   }
   bool works(const Part& part) const;
   bool works(std::string_view component) const { return works(part(component)); }
+  void start_process(ComponentId id);
   void start(ComponentId id);
   void appear(ComponentId id);
   void tell_endpoints(ComponentId id, bool is_there);
@@ -115,6 +116,7 @@ class RoverModel : public Robot {
   bool is_new(Time stamp, Duration limit) const { return later(stamp, limit) >= now_; }
   using Fields = std::vector<std::pair<const char*, Value>>;
   void publish(std::string_view component, const char* topic, const Fields& fields = {});
+  void disturb();
   void tell_signals(const std::string& source, const Value& value);
 
   template <class What>
@@ -126,11 +128,13 @@ class RoverModel : public Robot {
   }
 
   const RuleSet& rules_;
+  const bool withdraws_;
   simulation::Random random_;
   simulation::Agenda agenda_{};
   Time now_{};
   std::vector<Observation> inbox_{};
   std::set<CommandId> open_{};
+  std::set<std::string> strays_{};  // names of processes
   int last_pid_ = 100;
   std::vector<Part> parts_{};  // by component
   std::map<std::string, ComponentId, std::less<>> ids_{};
@@ -146,6 +150,7 @@ class RoverModel : public Robot {
   double charge_ = 1;
   bool is_plugged_ = true;     // the lidar
   Time flaps_since_ = kNever;  // its plug is loose
+  double clouds_ = 0;          // since the last status of cloud_maker
   double stood_s_ = 0;
   Time moved_{};
 

@@ -55,11 +55,7 @@ void Trip::navigate(Time now, const Works& works) {
     is_backing_ = false;
     doing_ = Doing::kPlanning;
   }
-  plan(now, works);
-}
-
-// A planner that is not active refuses; one that does not answer is waited for.
-void Trip::plan(Time now, const Works& works) {
+  // A planner that is not active refuses; one that does not answer is waited for.
   if (!works.planner || !works.in_map) return recover(now);
   doing_ = Doing::kFollowing;
   due_ = later(now, 1s);
@@ -97,25 +93,17 @@ std::optional<Trip::Command> Trip::follow(Time now, const Works& works) {
     return Command{};
   }
   well_ = now;
-  if (now > later(progress_, 8s)) {
-    recover(now);
-    return Command{};
-  }
-  if (left_ <= 0) {
-    finish(GoalStatus::kSucceeded);
-    return Command{};
-  }
-  return drive(now, works);
+  const bool is_stuck = now > later(progress_, 8s);
+  if (!is_stuck && left_ > 0) return drive(now, works);
+  if (is_stuck) recover(now);
+  if (!is_stuck) finish(GoalStatus::kSucceeded);
+  return Command{};
 }
 
 Trip::Command Trip::drive(Time now, const Works& works) {
-  Command command{kOnBends * works.max_speed, 0};
   const double since = seconds(now - began_);
-  if (now < later(began_, kTurnsFirst)) {
-    command = {0, kMostTurn};
-  } else {
-    command.turn = kBends * std::sin(since);
-  }
+  Command command{kOnBends * works.max_speed, kBends * std::sin(since)};
+  if (now < later(began_, kTurnsFirst)) command = {0, kMostTurn};
   if (works.oscillates) {
     const bool is_left = static_cast<std::int64_t>(since * 10) % 2 == 0;
     command.turn = is_left ? kMostTurn : -kMostTurn;

@@ -32,7 +32,7 @@ class Trip {
     double turn = 0;   // radians a second
   };
 
-  Trip(simulation::Random random, Duration tick) : random_(random), tick_(tick) {}
+  explicit Trip(simulation::Random random) : random_(random) {}
 
   // Gives what /cmd_vel_nav says in this tick; nothing: it is silent.
   std::optional<Command> step(Time now, const Works& works);
@@ -50,14 +50,12 @@ class Trip {
 
   void send_goal(Time now, const Works& works);
   void navigate(Time now, const Works& works);
-  void plan(Time now, const Works& works);
   void recover(Time now);
   void finish(GoalStatus status);
   std::optional<Command> follow(Time now, const Works& works);
   Command drive(Time now, const Works& works);
 
   simulation::Random random_;
-  const Duration tick_;
   Doing doing_ = Doing::kNothing;
   Time due_{};
   Time heard_ = kLongAgo;      // the mission: the last feedback
