@@ -66,18 +66,23 @@ TEST(RoverModel, HealsAsTheLiveRoverWithinAFactorOfThree) {
 }
 
 TEST(RoverModel, LeavesWhatTheLiveRoverLeavesUnderOtherManagers) {
-  const auto healed = [](const std::string& manager) {
+  const auto healed = [](const std::string& manager, std::uint64_t seed) {
     std::vector<std::string> names;
     for (const rover::Fault& fault : rover::faults()) {
       if (!fault.name.starts_with("kill:")) continue;
-      const auto result = play_of(fault.name, manager);
+      const auto result = play_of(fault.name, manager, seed);
       if (result.healed_s && *result.healed_s < 20) names.push_back(fault.name);
     }
     return names;
   };
-  EXPECT_THAT(healed("nav2"), testing::ElementsAre("kill:imu"));  // it is respawned anyway
+  EXPECT_THAT(healed("nav2", 1), testing::ElementsAre("kill:imu"));  // it is respawned anyway
   // Live 7 of 14: no server comes back before its bond breaks.
-  EXPECT_NEAR(static_cast<double>(healed("respawn").size()), 7, 2);
+  // With one seed all servers need equally long to start: hence the median of five.
+  std::vector<double> counts;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+    counts.push_back(static_cast<double>(healed("respawn", seed).size()));
+  std::ranges::sort(counts);
+  EXPECT_NEAR(counts[2], 7, 2);
 }
 
 TEST(RoverModel, LeavesARoverAloneThatIsWell) {
