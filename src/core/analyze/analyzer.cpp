@@ -104,7 +104,6 @@ void Analyzer::look_at(RuleId id, Time now) {
   last_resorts_.judge(id, now);
   switch (knowledge_.states[id].phase) {
     case RulePhase::kQuiet:
-      prove_gone(id, now);
       if (detector_.detects(id, now)) detect(id, now);
       break;
     case RulePhase::kFailing:
@@ -149,10 +148,12 @@ void Analyzer::detect(RuleId id, Time now) {
   const Duration soon = was_repaired ? kOutlasts : kRecurs;
   const bool recurs = state.gone_since != kLongAgo && now < later(state.gone_since, soon);
   // A rule with ON_CHANGE acts on each edge.
-  const bool may_be_there = state.is_unproven || !is_proven(state.gone_since, now);
+  // It may have become unknown, or false for another reason than that its function works.
+  const Time worked = state.detection.last_false;
+  const bool was_seen_working = worked == kLongAgo || worked > state.failing_since;
+  const bool may_be_there = !was_seen_working || !is_proven(state.gone_since, now);
   const bool is_same =
       state.search.times > 0 && may_be_there && !knowledge_.rules[id].policies.on_change;
-  state.is_unproven = false;
   left_off_.detected(id, now);
   // An earlier process detected it.
   const bool is_left_off = state.left_off.has_value();
@@ -225,19 +226,14 @@ void Analyzer::note_ready(RuleId id, const Attempt& attempt) {
   }
 }
 
-// Does it stay there although it can no longer be evaluated? A last resort holds until the failure is gone, and a person was
-// told of one at which nothing helped.
-bool Analyzer::is_held(RuleId id) const {
+// When it counts no more, since it can no longer be evaluated. A last resort holds until the failure is gone, and others wait
+// for a person beside one at which nothing helped.
+Time Analyzer::lost_at(RuleId id) const {
   const RuleState& state = knowledge_.states[id];
-  return state.phase == RulePhase::kExhausted || !state.standing.empty();
-}
-
-// One that became unknown is known to be gone since now.
-void Analyzer::prove_gone(RuleId id, Time now) {
-  RuleState& state = write_.states.state(id);
-  if (!state.is_unproven || !is_gone(id, now)) return;
-  state.is_unproven = false;
-  state.gone_since = now;
+  if (!state.standing.empty()) return kNever;
+  const bool is_exhausted = state.phase == RulePhase::kExhausted;
+  return later(state.detection.trigger_since,
+               is_exhausted ? kExhaustedLostAfter : DueVerdicts::kLostAfter);
 }
 
 void Analyzer::watch_failing(RuleId id, Time now) {
@@ -255,10 +251,8 @@ void Analyzer::watch_failing(RuleId id, Time now) {
       note_transient(id);
       resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
     }
-  } else if (!state.detection.trigger.known && !is_held(id) &&
-             now >= later(state.detection.trigger_since, DueVerdicts::kLostAfter)) {
+  } else if (!state.detection.trigger.known && now >= lost_at(id)) {
     leave(id, now);
-    write_.states.state(id).is_unproven = true;
     write_.events.tell(now, FailureLost{id});
   }
 }
@@ -501,8 +495,11 @@ void Analyzer::fail(RuleId id, Time now) {
                              : state.detection.trigger.known
                                  ? "the failure is still there"
                                  : "it is unknown whether the failure is still there";
-  attempt.stage = Attempt::Stage::kUndoing;
+  // What may have helped stays.
+  const bool is_unknown = attempt.obstacle.empty() && !state.detection.trigger.known;
+  attempt.stage = is_unknown ? Attempt::Stage::kOver : Attempt::Stage::kUndoing;
   write_.events.tell(now, StrategyFailed{attempt.strategy, reason});
+  if (is_unknown) judge(id, now);
 }
 
 void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
@@ -604,8 +601,7 @@ void Analyzer::schedule(RuleId id, Time now) {
   const auto want = [&](Time at) {
     if (at > now) next = std::min(next, at);
   };
-  if (!state.detection.trigger.known && state.phase != RulePhase::kQuiet)
-    want(later(state.detection.trigger_since, DueVerdicts::kLostAfter));
+  if (!state.detection.trigger.known && state.phase != RulePhase::kQuiet) want(lost_at(id));
   if (state.phase == RulePhase::kFailing) want(state.search.retry_at);
   want(last_resorts_.next_time(id));
   // A process that begins anew has lost what a last resort has changed, and may do what was refused.

@@ -56,6 +56,8 @@ class Analyzer {
   static constexpr Duration kRecurs = std::chrono::seconds(5);
   // A failure that its own strategy cleared goes on if it is back within so long; later it begins anew.
   static constexpr Duration kOutlasts = std::chrono::seconds(2);
+  // An exhausted failure that is unknown for so long explains nothing any more.
+  static constexpr Duration kExhaustedLostAfter = std::chrono::minutes(5);
   // A failure that came so often, each time before it was proven gone, flaps.
   static constexpr int kFlaps = 3;
 
@@ -143,8 +145,7 @@ class Analyzer {
   void succeed(RuleId id, Time now);
   void fail(RuleId id, Time now);
   void excuse(RuleId id, std::string why, Time now);
-  bool is_held(RuleId id) const;
-  void prove_gone(RuleId id, Time now);
+  Time lost_at(RuleId id) const;
   void excuse(RuleId id, ComponentId unheard, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);
   void exhaust_if_spent(RuleId id, Time now);

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "diagnose/stays_inactive.h"
 #include "diagnose/timing.h"
 #include "knowledge/group_health.h"
 
@@ -46,6 +47,16 @@ Time DueVerdicts::deadline(const Attempt& attempt) const {
   return later(given, knowledge_.signals.latency(id));
 }
 
+// What it has changed is gone or stopped, so nothing more is to be seen of it.
+bool DueVerdicts::has_lost_a_process(const Attempt& attempt) const {
+  const auto& adaptations = knowledge_.rules[attempt.strategy].adaptations;
+  return std::ranges::any_of(adaptations, [&](const Adaptation& each) {
+    const ComponentState& state = knowledge_.components[each.component];
+    return each.type != AdaptationType::kStop && state.pid != 0 &&
+           state.process != ProcessState::kRunning;
+  });
+}
+
 bool DueVerdicts::has_spoken(const Attempt& attempt) const {
   const Strategy& strategy = knowledge_.rules[attempt.strategy];
   return std::ranges::none_of(strategy.adaptations, [&](const Adaptation& a) {
@@ -60,6 +71,7 @@ DueVerdicts::Verdict DueVerdicts::verdict(const Attempt& attempt, Time now) cons
       is_about_whole_group(attempt.strategy) ? missing_group(id, now) : std::nullopt;
   if (knowledge_.rules[id].policies.on_change || (detector_.is_cleared(id, now) && !awaited))
     return Verdict::kSucceeds;
+  if (!trigger.known && has_lost_a_process(attempt)) return Verdict::kFails;
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
   const bool is_clearing = is_false(trigger) && !(awaited && is_left_down(*awaited, attempt, now));
   if (is_suspended || now < attempt.deadline || is_clearing) return Verdict::kNotYet;
@@ -206,8 +218,9 @@ std::optional<std::string> DueVerdicts::why_no_attempt(const Attempt& attempt) c
     const ComponentState& state = knowledge_.components[adaptation.component];
     if (!attempt.obstacle.empty() && !state.start_missing.empty())
       return name + " cannot be started: " + state.start_missing;
-    const Time failed = knowledge_.states[knowledge_.rules[attempt.strategy].rule].failing_since;
-    if (attempt.obstacle.empty() && state.is_inactive_since(failed))
+    if (attempt.obstacle.empty() &&
+        diagnose::stays_inactive(adaptation.component, knowledge_.rules[attempt.strategy],
+                                 knowledge_))
       return name + " is there again, and inactive as before";
   }
   return std::nullopt;

@@ -59,6 +59,7 @@ class DueVerdicts {
   std::optional<std::string> why_no_attempt(const Attempt& attempt) const;
 
  private:
+  bool has_lost_a_process(const Attempt& attempt) const;
   bool is_about_whole_group(StrategyId strategy) const;
   // The group stays as it is, and that is not active: no member is changing.
   bool is_left_down(GroupId group, const Attempt& attempt, Time now) const;

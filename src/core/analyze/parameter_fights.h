@@ -2,7 +2,7 @@
 //
 // A strategy sets a parameter and resolves its failure; a strategy of a less critical rule then sets
 // the same parameter; the failure is back within kSoon. Two such turns are evidence enough: from then on
-// all less critical strategies that set it are barred, and the more critical rule's value stays, until the parameter's process
+// all less critical strategies that pull it to that side are barred, and the more critical rule's value stays, until the parameter's process
 // begins anew (plan/validity.h). A last resort proves nothing: it is meant to be taken back, and its failure may come again for its own reasons.
 #pragma once
 
@@ -27,7 +27,8 @@ class ParameterFights {
   void detected(RuleId rule, Time now);
 
  private:
-  void bar_others(StrategyId own, ParameterId parameter, Time now);
+  std::optional<bool> pulls_up(StrategyId id, StrategyId own, ParameterId parameter) const;
+  void bar(StrategyId loser, StrategyId own, ParameterId parameter, Time now);
 
   struct Setters {
     std::optional<StrategyId> last;

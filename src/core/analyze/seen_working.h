@@ -1,6 +1,6 @@
 // Until when a trigger that is false shows that the function of its rule worked.
 //
-// Of `a || b` one part is enough. A part shows nothing if it is false only because of
+// One part of `a || b` is enough. A part shows nothing if it is false only because of
 //   - a topic that never came: it is not older than its limit at first;
 //   - the lifecycle of a component that is not active, and so has nothing to do;
 //   - a diagnostic of others, such as a mode: in another one the rule would not fire.

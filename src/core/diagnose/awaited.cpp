@@ -230,10 +230,15 @@ Awaiting Awaited::of_learned_supplier(RuleId failure) const {
   return found;
 }
 
-// A window that still holds what a strategy has repaired comes and goes at its limit.
+// A window that still holds what a strategy has repaired comes and goes at its limit. Only of topics and events is it known
+// whether they have failed anew.
 Time Awaited::looks_back_until(RuleId failure) const {
   const RuleState& state = knowledge_.states[failure];
-  const bool has_window = remembers(failure, knowledge_.rules) > Duration::zero();
+  const auto& inputs = knowledge_.rules[failure].inputs;
+  const bool has_window = remembers(failure, knowledge_.rules) > Duration::zero() &&
+                          std::ranges::none_of(inputs, [&](InputId id) {
+                            return is_over_window(knowledge_.rules[id]);
+                          });
   if (state.repaired == kLongAgo || !has_window || state.repaired <= state.unhelped_at)
     return kLongAgo;
   return echo_ends(failure, {}, state.repaired, Duration::zero(), knowledge_);

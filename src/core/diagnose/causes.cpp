@@ -299,7 +299,7 @@ void Causes::add_unsupplied(const Knowledge& knowledge) {
     for (const ComponentId c : touched_by(rule, knowledge)) {
       std::optional<ComponentId> lacking;
       if (is_unsupplied(c)) lacking = c;
-      // A component that was never seen may be missing anywhere upstream: the graph does not show where. What publishes all
+      // A component that was never seen may be missing anywhere upstream: the graph does not show where. One that publishes all
       // the same does not need that input.
       if (!lacking && is_any_never_seen) {
         lacking = knowledge.graph.first_upstream(c, [&](ComponentId supplier) {
@@ -431,8 +431,19 @@ bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledg
 bool Causes::may_be_effect(std::size_t silent, std::size_t i, const Reach& reach,
                            const Knowledge& knowledge) const {
   const CauseNode& node = nodes_[silent];
-  if (node.trouble != Trouble::kSilent || node.onset.latest < nodes_[i].onset.earliest)
-    return false;
+  // That a component is not active is no effect of data. While a rule may still fire that mends the silent one, this is the likelier.
+  const Onset& onset = nodes_[i].onset;
+  const bool may_be_mended =
+      knowledge.now < later(node.onset.latest, kLongestPlainEvidence) &&
+      std::ranges::any_of(knowledge.states.touching(node.component), [&](RuleId rule) {
+        return knowledge.states[rule].detection.trigger.known &&
+               contains(mended_by(rule, knowledge.rules), node.component);
+      });
+  const bool is_earlier =
+      reads_inactive(nodes_[i].rule, knowledge)
+          ? node.onset.latest < onset.earliest
+          : node.onset.latest <= (may_be_mended ? onset.latest : onset.earliest);
+  if (node.trouble != Trouble::kSilent || is_earlier) return false;
   const auto upstream = reach.upstream(reach.place_of(node.component));
   return std::ranges::any_of(touched_by(nodes_[i].rule, knowledge),
                              [&](ComponentId c) { return has(upstream, reach.place_of(c)); });

@@ -71,8 +71,9 @@ std::optional<Slot> after_long_silence(const Input& input) {
 
 bool is_held_by_cooldown(RuleId rule, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[rule];
+  const Time longest = later(knowledge.now, kLongestCooldown);
   return state.phase == RulePhase::kQuiet && knowledge.now < state.quiet_until &&
-         is_coming(state, knowledge.rules[rule].policies);
+         state.quiet_until <= longest && is_coming(state, knowledge.rules[rule].policies);
 }
 
 bool is_imminent(RuleId rule, const Knowledge& knowledge) {

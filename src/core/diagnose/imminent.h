@@ -23,7 +23,9 @@ std::optional<Slot> after_long_silence(const Input& input);
 //   - the last reading of a signal that its trigger reads was nearer to firing it than any lately
 //     (SignalStore::is_unusual).
 bool is_imminent(RuleId rule, const Knowledge& knowledge);
-// Is it so, and fires only once its COOLDOWN is over? That hides the alarm, and not the evidence.
+// Is it so, and fires only once its COOLDOWN is over, within kLongestCooldown? A cooldown hides the alarm, and not the
+// evidence.
+inline constexpr Duration kLongestCooldown = std::chrono::seconds(60);
 bool is_held_by_cooldown(RuleId rule, const Knowledge& knowledge);
 
 // All that are, ascending.

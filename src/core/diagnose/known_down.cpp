@@ -43,7 +43,8 @@ bool reads_inactive(RuleId rule, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   const auto is_inactive = [&](ComponentId c) {
     const ComponentState& state = knowledge.components[c];
-    return state.lifecycle != Lifecycle::kUnknown && state.lifecycle != Lifecycle::kActive;
+    return state.lifecycle != Lifecycle::kUnknown && state.lifecycle != Lifecycle::kActive &&
+           std::ranges::binary_search(rules[rule].repaired, c);
   };
   return std::ranges::any_of(rules[rule].inputs, [&](InputId id) {
     const Input& input = rules[id];

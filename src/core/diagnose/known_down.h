@@ -24,7 +24,8 @@ bool revives(const Strategy& strategy, const Knowledge& knowledge);
 bool is_known_down(RuleId rule, const Knowledge& knowledge);
 // Does a strategy of the rule begin a component anew that hangs?
 bool is_about_hang(RuleId rule, const Knowledge& knowledge);
-// Does it read the lifecycle of a component that is not active, or the health of a group with such a member?
+// Does it read the lifecycle of a component that it repairs and that is not active, or the health of a group with such a
+// member?
 bool reads_inactive(RuleId rule, const Knowledge& knowledge);
 
 // A process may wait so long for an answer of a supplier that no rule repairs. By then a launcher or a

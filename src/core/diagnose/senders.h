@@ -1,4 +1,4 @@
-// Who sends the messages and values that culprit watches, and who has stopped to.
+// The senders of the messages and values that culprit watches, and those that have stopped to send.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace culprit::diagnose {
 
-// Of a topic, or of the field of one: its only publisher. Of a diagnostic: whom it is from. Empty: it is not known, or the
-// input is about something else.
+// The only publisher of a topic, or of that of a field; or the component that a diagnostic is from. Empty: it is not known, or
+// the input is about something else.
 std::optional<ComponentId> sender_of(const Input& input, const Knowledge& knowledge);
 
 // When the last came of what the component sends all the time; kLongAgo: nothing yet.

@@ -14,8 +14,7 @@ using Kind = Input::Kind;
 std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& knowledge) {
   if (watches_a_topic(input)) {
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
-    if (is_silent(input.topic, now, knowledge))
-      return Onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
+    if (is_silent(input.topic, now, knowledge)) return onset_of_silence(rhythm);
     if (input.kind == Kind::kRate && rhythm.slowing) {
       // Some messages in time do not make it later than what it slows down.
       return Onset{std::min(rhythm.slowing->since, now - input.window),
@@ -127,6 +126,12 @@ Onset onset_of_hang(const ComponentState& state, Time published) {
   const Time found = state.alive == false ? state.alive_since : kNever;
   const Time missed = state.missed_probes > 1 ? std::max(state.missed_since, published) : kNever;
   return {state.answered, std::min({found, missed, state.questioned.unanswered.value_or(kNever)})};
+}
+
+Onset onset_of_silence(const SignalStore::Rhythm& rhythm) {
+  Onset onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
+  if (rhythm.slowing) onset.earliest = std::min(onset.earliest, rhythm.slowing->since);
+  return onset;
 }
 
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge) {

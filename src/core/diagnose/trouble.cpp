@@ -120,7 +120,7 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
       continue;
     const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);
     if (!component || knowledge.is_unheard(*component)) continue;
-    const Onset onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
+    const Onset onset = onset_of_silence(rhythm);
     auto& seen = all[component->index];
     if (seen)
       follow(*seen, onset);

@@ -115,7 +115,7 @@ std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
   }
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (!begins_anew(adaptation)) continue;
-    if (auto limit = start(adaptation.component, now)) return limit;
+    if (auto limit = start(adaptation.component, strategy.rule, now)) return limit;
     const std::string& name = knowledge_.rules[adaptation.component].name;
     const PerComponent& state = components_[adaptation.component.index];
     auto limit = exceeded(state.begun_anew, Restraint::kRestarts,
@@ -166,13 +166,29 @@ std::optional<Limits::Limit> Limits::launched_within(Duration time, ComponentId 
                knowledge_.rules[component].name + " was launched a moment ago", until};
 }
 
-// What is being started, and has sent nothing yet of what came before, is not begun anew within its READY.
-std::optional<Limits::Limit> Limits::start(ComponentId component, Time now) const {
-  const ComponentState& state = knowledge_.components[component];
-  const Duration ready = knowledge_.rules[component].ready;
-  if (ready == Duration::zero() || state.alive == false) return std::nullopt;
+// Does the rule wait for a topic of the component that came before its process began, and not since? If it reads none:
+// has nothing come at all?
+bool Limits::is_silent_since_its_start(ComponentId component, RuleId rule) const {
+  const Time begun = knowledge_.components[component].node_seen;
+  bool reads_any = false;
+  for (const InputId id : knowledge_.rules[rule].inputs) {
+    const Input& input = knowledge_.rules[id];
+    if (!diagnose::watches_a_topic(input) || diagnose::sender_of(input, knowledge_) != component)
+      continue;
+    reads_any = true;
+    const auto& last = knowledge_.signals.rhythm(input.topic).last;
+    if (last && *last < begun) return true;
+  }
   const Time last = diagnose::sent_last(component, knowledge_);
-  if (last == kLongAgo || last >= state.node_seen) return std::nullopt;
+  return !reads_any && last != kLongAgo && last < begun;
+}
+
+// What is being started is not begun anew within its READY.
+std::optional<Limits::Limit> Limits::start(ComponentId component, RuleId rule, Time now) const {
+  const Duration ready = knowledge_.rules[component].ready;
+  if (ready == Duration::zero() || knowledge_.components[component].alive == false ||
+      !is_silent_since_its_start(component, rule))
+    return std::nullopt;
   return launched_within(ready, component, components_[component.index].launched, now);
 }
 

@@ -79,7 +79,8 @@ class Limits {
   std::optional<Limit> quiet(ComponentId component, Time now) const;
   std::optional<Limit> launched_within(Duration time, ComponentId component, Time since,
                                        Time now) const;
-  std::optional<Limit> start(ComponentId component, Time now) const;
+  std::optional<Limit> start(ComponentId component, RuleId rule, Time now) const;
+  bool is_silent_since_its_start(ComponentId component, RuleId rule) const;
   // `failed`: when the failure of `rule` was detected.
   void spend(StrategyId strategy, Time now, Time failed);
   void give_back(StrategyId strategy);

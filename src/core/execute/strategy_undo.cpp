@@ -126,6 +126,10 @@ std::optional<StrategyExecutor::Missing> StrategyExecutor::missing_for(const Run
   const auto is_down = [&](ComponentId c) {
     return c != undo.component && knowledge_.components[c].alive == false;
   };
+  const auto& suppliers = knowledge_.graph.upstream(undo.component);
+  const auto is_upstream = [&](ComponentId c) {
+    return std::ranges::find(suppliers, c) != suppliers.end();
+  };
   bool is_later = false;
   for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
     const Adaptation& adaptation = strategy.adaptations[i];
@@ -137,7 +141,8 @@ std::optional<StrategyExecutor::Missing> StrategyExecutor::missing_for(const Run
     } else if (is_later && is_down(adaptation.component)) {
       return Missing{adaptation.component, "is down"};
     } else if (is_later && adaptation.type == AdaptationType::kActivate &&
-               knowledge_.components[adaptation.component].lifecycle == Lifecycle::kInactive) {
+               knowledge_.components[adaptation.component].lifecycle == Lifecycle::kInactive &&
+               is_upstream(adaptation.component)) {
       return Missing{adaptation.component, "is inactive"};
     } else if (is_later && has_failed) {
       return Missing{adaptation.component, "could not be brought up"};

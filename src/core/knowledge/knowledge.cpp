@@ -156,16 +156,20 @@ bool Knowledge::only_starts_the_gone(const Strategy& strategy) const {
   const auto is_started = [&](ComponentId c) {
     return std::ranges::find(started, c) != started.end();
   };
-  const auto is_part_of_it = [&](const Adaptation& each) {
+  const auto is_part_of_it = [&](std::size_t place) {
+    const Adaptation& each = strategy.adaptations[place];
     const ComponentId component = each.component;
     if (each.type == kStop) return strategy.has_steps() && is_known_gone(component);
-    if (is_started(component)) return true;
-    const bool is_pause = each.type == kDeactivate || each.type == kActivate;
-    return strategy.has_steps() && is_pause &&
+    if (is_started(component) || gives_back(place, strategy)) return true;
+    return strategy.has_steps() && each.type == kDeactivate &&
            (components[component].is_at_rest() ||
             std::ranges::any_of(graph.upstream(component), is_started));
   };
-  return !started.empty() && std::ranges::all_of(strategy.adaptations, is_part_of_it);
+  if (started.empty()) return false;
+  for (std::size_t place = 0; place < strategy.adaptations.size(); ++place) {
+    if (!is_part_of_it(place)) return false;
+  }
+  return true;
 }
 
 bool Knowledge::goes_on(StrategyId id) const {

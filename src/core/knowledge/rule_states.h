@@ -103,15 +103,13 @@ struct RuleState {
   std::optional<Onset> onset;    // when it began, as far as known when it was detected
   Time first_onset = kNever;     // the latest onset of its first detection, if it is flapping
   Time masked_until = kLongAgo;  // until then a failure upstream was there that may have caused it
-  // When a strategy for it did not help last. That may have, and what shows since have a cause that began meanwhile.
+  // When a strategy for it did not help last. It may have, and what shows since may have a cause that began meanwhile.
   Time unhelped_at = kLongAgo;
   Time worked_until = kLongAgo;   // when it was seen to be well last before that; kLongAgo: never
   Time recurring_since = kNever;  // if it cleared and is back: when it was detected first
   Time gone_since = kLongAgo;     // when it cleared last
   Time repaired = kLongAgo;       // when a strategy of its own cleared it last
-  bool is_unproven =
-      false;  // it became unknown while it was there, and was not known to be gone since
-  Time quiet_until = kLongAgo;  // COOLDOWN
+  Time quiet_until = kLongAgo;    // COOLDOWN
 
   Search search;
   std::optional<Attempt> attempt;

@@ -16,7 +16,7 @@ std::size_t last_operand(const std::vector<Instruction>& code, std::size_t end) 
   return end;
 }
 
-// Of the code in [begin, end).
+// Adds those of the code in [begin, end).
 void add_alternatives(const Program& program, std::size_t begin, std::size_t end,
                       std::vector<Program>& to) {
   while (program.code[end - 1].op == Op::kOr) {

@@ -69,8 +69,6 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
     switch (input.subject()) {
       case Input::Subject::kTopic:
         topics_[input.topic.index].inputs.push_back(id);
-        topics_[input.topic.index].longest_window =
-            std::max(topics_[input.topic.index].longest_window, input.window);
         topics_[input.topic.index].needs_phi |= input.kind == Kind::kPhi;
         if (input.kind == Kind::kRate || input.kind == Kind::kGoals)
           derived_[i].count = monitor::SlidingCount(input.window);
@@ -98,6 +96,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
         break;
     }
   }
+  for (const Rule& rule : rules.rules) note_how_far_it_looks_back(rule);
   for (std::size_t t = 0; t < rules.topics.size(); ++t)
     topic_ids_[rules.topics[t].name].emplace_back(t);
   for (std::size_t s = 0; s < rules.signals.size(); ++s) {
@@ -106,6 +105,21 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
     }
   }
   deadlines_.set(rules.inputs.size(), discovered_);
+}
+
+void Monitor::note_how_far_it_looks_back(const Rule& rule) {
+  const RuleSet& rules = knowledge_.rules;
+  const Duration held =
+      rule.policies.hold_for + rules.cycle * std::int64_t{rule.policies.hold_window};
+  for (const InputId id : rule.inputs) {
+    const Input& input = rules[id];
+    const auto* field = input.subject() == Input::Subject::kSignal
+                            ? std::get_if<TopicField>(&rules[input.signal].source)
+                            : nullptr;
+    if (field == nullptr && input.subject() != Input::Subject::kTopic) continue;
+    Duration& longest = topics_[(field != nullptr ? field->topic : input.topic).index].looked_back;
+    longest = std::max(longest, input.window + held);
+  }
 }
 
 void Monitor::observe(const Observation& observation, Time at) {

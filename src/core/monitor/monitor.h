@@ -126,7 +126,7 @@ class Monitor {
     monitor::PhiAccrual phi;
     monitor::LossMeter loss;
     std::vector<InputId> inputs;
-    Duration longest_window{};  // of these
+    Duration looked_back{};  // at most, by a rule that reads it, until it fires
     bool needs_phi = false;
     // There was a gap in reception since the last sample: until then its silence is as long as it
     // was.
@@ -249,6 +249,7 @@ class Monitor {
   Time next_of_logs(InputId id, Time now) const;
 
   // Whether a component that publishes the topic joined the graph since then.
+  void note_how_far_it_looks_back(const Rule& rule);
   bool has_begun_since(Time before, TopicId topic) const;
   bool has_begun_since(Time before, ComponentId sender) const;
   bool has_sender_begun_since(Time before, InputId id) const;

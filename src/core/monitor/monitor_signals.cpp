@@ -135,7 +135,7 @@ void Monitor::note_arrival(InputId id, Time at) {
   const bool is_heard = arrivals.last != kLongAgo && arrivals.last >= awake_;
   const Duration pause = is_heard ? at - arrivals.last : Duration::zero();
   const bool is_longer = pause > arrivals.longest;
-  // Who begins anew is silent for a while.
+  // A sender that begins anew is silent for a while.
   if (is_heard && !(is_longer && has_sender_begun_since(arrivals.last, id))) {
     arrivals.gap = usual_gap(arrivals.gap, pause);
     arrivals.longest = std::max(arrivals.longest, pause);

@@ -25,9 +25,9 @@ void note_silence(SignalStore::Rhythm& rhythm, Duration interval, Time at) {
 }
 
 // A message comes after `interval`. A pace that has lasted for longer than any rule of the topic looks back is the usual one.
-void note_pace(SignalStore::Rhythm& rhythm, Duration interval, Duration longest_window) {
+void note_pace(SignalStore::Rhythm& rhythm, Duration interval, Duration looked_back) {
   auto& slowing = rhythm.slowing;
-  const Duration lasting = std::max(SignalStore::Rhythm::kSlowAtMost, longest_window);
+  const Duration lasting = std::max(SignalStore::Rhythm::kSlowAtMost, looked_back);
   if (slowing && *rhythm.last > later(slowing->since, lasting)) slowing.reset();
   const Duration usual = slowing ? slowing->gap : rhythm.gap;
   const bool is_slow = usual > Duration::zero() &&
@@ -58,7 +58,7 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
     note_pause(rhythm, interval, seen.topic);
     rhythm.interval = smoothed(rhythm.interval, interval);
-    note_pace(rhythm, interval, topic.longest_window);
+    note_pace(rhythm, interval, topic.looked_back);
     note_silence(rhythm, interval, at);
   }
   rhythm.last = topic.last = at;

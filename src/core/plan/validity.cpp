@@ -5,6 +5,7 @@
 
 #include "base/invariant.h"
 #include "diagnose/questions.h"
+#include "diagnose/stays_inactive.h"
 #include "diagnose/timing.h"
 #include "knowledge/group_health.h"
 #include "knowledge/held.h"
@@ -138,12 +139,13 @@ bool is_met(const Adaptation& adaptation, const Knowledge& knowledge) {
       return is_alive;
     case AdaptationType::kStop:
       return state.alive == false && state.known_pid() == 0;
+    case AdaptationType::kChangeCommunication:
+      return uses_already(adaptation, knowledge);
     case AdaptationType::kRestart:
     case AdaptationType::kRedeploy:
     case AdaptationType::kSetParameter:
     case AdaptationType::kIncreaseParameter:
     case AdaptationType::kDecreaseParameter:
-    case AdaptationType::kChangeCommunication:
     case AdaptationType::kChangeMode:
     case AdaptationType::kCall:
     case AdaptationType::kStartGroup:
@@ -159,8 +161,6 @@ bool holds_already(const Adaptation& adaptation, const Knowledge& knowledge) {
   if (adaptation.type == AdaptationType::kDeactivate)
     return is_inactive_anyway(state) ||
            (state.alive == true && state.lifecycle == Lifecycle::kInactive);
-  if (adaptation.type == AdaptationType::kChangeCommunication)
-    return uses_already(adaptation, knowledge);
   return is_met(adaptation, knowledge);
 }
 
@@ -255,60 +255,19 @@ std::optional<Invalid> needless_start(const Strategy& strategy, const Knowledge&
                  "all of " + knowledge.rules[*first.group].name + " are active already"};
 }
 
-bool reads_lifecycle(const Strategy& strategy, ComponentId component, const RuleSet& rules) {
-  return std::ranges::any_of(rules[strategy.rule].inputs, [&](InputId id) {
-    return rules[id].kind == Input::Kind::kLifecycle && rules[id].component == component;
-  });
-}
-
-bool is_of_any_group(ComponentId component, const RuleSet& rules) {
-  return std::ranges::any_of(rules.groups, [&](const Group& group) {
-    return std::ranges::find(group.members, component) != group.members.end();
-  });
-}
-
-// Its topics are what the rule misses.
-bool is_missed_by(const Strategy& strategy, ComponentId component, const Knowledge& knowledge) {
-  return std::ranges::any_of(knowledge.rules[strategy.rule].inputs, [&](InputId id) {
-    const Input& input = knowledge.rules[id];
-    return diagnose::watches_a_topic(input) &&
-           knowledge.graph.publishes(component, knowledge.rules[input.topic]);
-  });
-}
-
-bool activates(const Strategy& strategy, ComponentId component) {
-  return std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
-    return a.component == component && a.type == AdaptationType::kActivate;
-  });
-}
-
-// Is what it adapts, and is inactive, inactive afterwards?
-bool keeps_inactive(AdaptationType type) {
-  return type == AdaptationType::kRedeploy || type == AdaptationType::kCall ||
-         syntax::names_parameter(type);
-}
-
-// A person, or another program, deactivated what sends the rule's topics before they were missed. A redeploy brings
-// it back to that state, and a call leaves it there, so it sends nothing all the same. Beside strategies that were tried in vain the rule is
-// given up. (Inactive since then: an interrupted restart may have left it so.)
+// A person, or another program, deactivated what sends the rule's topics before they were missed. Beside strategies that were
+// tried in vain the rule is given up.
 std::optional<Invalid> stays_deactivated(const Strategy& strategy, const Knowledge& knowledge) {
-  const RuleSet& rules = knowledge.rules;
-  const RuleState& of_rule = knowledge.states[strategy.rule];
   for (const Adaptation& a : strategy.adaptations) {
-    const ComponentState& state = knowledge.components[a.component];
-    if (!keeps_inactive(a.type) || !state.is_inactive_since(of_rule.failing_since) ||
-        is_of_any_group(a.component, rules) || activates(strategy, a.component) ||
-        reads_lifecycle(strategy, a.component, rules) ||
-        !is_missed_by(strategy, a.component, knowledge))
-      continue;
+    if (!diagnose::stays_inactive(a.component, strategy, knowledge)) continue;
     const std::string why =
         "is inactive, and a " +
         std::string(a.type == AdaptationType::kRedeploy ? "redeploy keeps its state"
                     : a.type == AdaptationType::kCall   ? "call does not change that"
                                                         : "parameter does not change that");
-    const std::vector<bool>& tried = of_rule.search.tried;
+    const std::vector<bool>& tried = knowledge.states[strategy.rule].search.tried;
     if (std::ranges::find(tried, true) == tried.end()) return Invalid{a.component, why, true};
-    return Invalid{a.component, rules[a.component].name + " " + why};
+    return Invalid{a.component, knowledge.rules[a.component].name + " " + why};
   }
   return std::nullopt;
 }
@@ -354,7 +313,8 @@ std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Kno
     const Adaptation& a = strategy.adaptations[i];
     const ComponentState& state = knowledge.components[a.component];
     const bool is_down = state.alive == true && state.lifecycle != Lifecycle::kActive;
-    if (a.group || !is_down || reads_lifecycle(strategy, a.component, rules)) continue;
+    if (a.group || !is_down || diagnose::reads_lifecycle(strategy.rule, a.component, rules))
+      continue;
     for (const Group& group : rules.groups) {
       if (std::ranges::find(group.members, a.component) == group.members.end()) continue;
       const GroupHealth health = health_of(group, knowledge.components, knowledge.now);

@@ -117,7 +117,9 @@ bool ReasonsToWait::exclude_unproven(WeighedCandidate& weighed, double chance) c
                     awaiting->component.value_or(likely_.likeliest_component(awaiting->because)),
                     was_in_trouble ? std::nullopt : std::optional(awaiting->because)});
   ends(weighed, awaiting->until);
-  if (awaiting->component)
+  if (is_own_window)
+    weighed.candidate.remark = "its window still holds the time before its repair";
+  else if (awaiting->component)
     weighed.candidate.remark = was_in_trouble ? "was in trouble" : "was down for a strategy";
   return true;
 }
