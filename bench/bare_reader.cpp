@@ -24,7 +24,7 @@ namespace culprit::bench {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
+namespace fastrtps = eprosima::fastrtps::rtps;
 
 // One copy of the payload, as a generated type of an unbounded message makes it.
 class ImageType final : public dds::TopicDataType {
@@ -33,8 +33,8 @@ class ImageType final : public dds::TopicDataType {
     setName("sensor_msgs::msg::dds_::Image_");
     m_typeSize = 64;
   }
-  bool serialize(void*, rtps::SerializedPayload_t*) override { return false; }
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
+  bool serialize(void*, fastrtps::SerializedPayload_t*) override { return false; }
+  bool deserialize(fastrtps::SerializedPayload_t* payload, void* data) override {
     auto& bytes = *static_cast<std::vector<unsigned char>*>(data);
     bytes.assign(payload->data, payload->data + payload->length);
     return true;
@@ -42,7 +42,7 @@ class ImageType final : public dds::TopicDataType {
   std::function<uint32_t()> getSerializedSizeProvider(void*) override {
     return [] { return 0u; };
   }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
+  bool getKey(void*, fastrtps::InstanceHandle_t*, bool) override { return false; }
   void* createData() override { return new std::vector<unsigned char>; }
   void deleteData(void* data) override { delete static_cast<std::vector<unsigned char>*>(data); }
 };
@@ -68,9 +68,9 @@ dds::DomainParticipantQos loopback_qos(int domain) {
   dds::DomainParticipantQos out;
   out.transport().use_builtin_transports = false;
   out.transport().user_transports.push_back(udp);
-  rtps::Locator_t everyone;
+  fastrtps::Locator_t everyone;
   everyone.kind = LOCATOR_KIND_UDPv4;
-  rtps::IPLocator::setIPv4(everyone, "239.255.0.1");
+  fastrtps::IPLocator::setIPv4(everyone, "239.255.0.1");
   everyone.port = static_cast<uint32_t>(7400 + 250 * domain);
   out.wire_protocol().builtin.initialPeersList.push_back(everyone);
   return out;
@@ -94,7 +94,7 @@ void read_bare() {
   auto* subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   dds::DataReaderQos qos;
   qos.reliability().kind = dds::BEST_EFFORT_RELIABILITY_QOS;
-  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = fastrtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   Counter counter;
   auto* reader = subscriber->create_datareader(topic, qos, &counter);
 

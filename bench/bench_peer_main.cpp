@@ -27,7 +27,7 @@ namespace culprit::bench {
 namespace {
 
 using namespace std::chrono_literals;
-using ros2::SystemTime;
+using rtps::SystemTime;
 
 struct Peer {
   Peer() {
@@ -48,7 +48,7 @@ void latencies(const std::string& topic) {
   Peer peer;
   const auto node = peer.node("latencies");
   const auto reader = ros2::RawSubscription::create(
-      node->entry(), topic, ros2::msg::Float64::kType, ros2::qos::kSensorData,
+      node->entry(), topic, ros2::msg::Float64::kType, rtps::qos::kSensorData,
       ros2::PayloadUse::kWhole, [](const ros2::Sample& sample) {
         const SystemTime here = std::chrono::system_clock::now();
         std::printf("%lld %lld\n", static_cast<long long>(sample.sent.time_since_epoch().count()),
@@ -94,7 +94,7 @@ void robot(int index, int of, int nodes) {
     publishers.push_back(std::move(
         *members.back()->create_publisher<Imu>("/node_" + std::to_string(number) + "/imu")));
     subscriptions.push_back(std::move(*members.back()->create_subscription<Imu>(
-        "/node_" + std::to_string((number + 1) % (of * nodes)) + "/imu", ros2::qos::kSensorData,
+        "/node_" + std::to_string((number + 1) % (of * nodes)) + "/imu", rtps::qos::kSensorData,
         [](const Imu&) {})));
   }
   const ros2::Timer timer(peer.executor, 100ms, [&] {
@@ -121,14 +121,14 @@ void images() {
   Peer peer;
   const auto node = peer.node("images");
   const auto publisher = ros2::RawPublisher::create(
-      node->entry(), "/bench/image", ros2::msg::Image::kType, ros2::qos::kSensorData);
+      node->entry(), "/bench/image", ros2::msg::Image::kType, rtps::qos::kSensorData);
   ros2::msg::Image image;
   image.width = 1920;
   image.height = 1080;
   image.encoding = "rgb8";
   image.step = 3 * 1920;
   image.data.assign(std::size_t{1080} * 3 * 1920, 127);
-  const ros2::Bytes payload = ros2::encode(image);
+  const rtps::Bytes payload = rtps::encode(image);
   const ros2::Timer timer(peer.executor, 33ms, [&] { (*publisher)->publish(payload); });
   peer.executor.run();
 }

@@ -17,7 +17,7 @@ namespace culprit::bench {
 namespace {
 
 using namespace std::chrono_literals;
-using ros2::SystemTime;
+using rtps::SystemTime;
 
 // The node that culprit adapts, and the topics whose values and silence say that it has to.
 class Target {
@@ -45,7 +45,7 @@ class Target {
   // Gives when it was sent.
   SystemTime publish(double value) {
     const SystemTime now = std::chrono::system_clock::now();
-    (*value_)->publish(ros2::encode(ros2::msg::Float64{value}));
+    (*value_)->publish(rtps::encode(ros2::msg::Float64{value}));
     return now;
   }
 

@@ -73,7 +73,7 @@ class Watched {
     observer_.begins(manager_, {}, Time{});
   }
 
-  web::Hub& hub() { return hub_; }
+  http::Hub& hub() { return hub_; }
 
   // How long a step took, in us.
   double step() {
@@ -87,7 +87,7 @@ class Watched {
 
  private:
   Manager manager_;
-  web::Hub hub_;
+  http::Hub hub_;
   web::Metrics metrics_;
   web::HubObserver observer_;
   Time now_{};
@@ -102,9 +102,9 @@ void step_with_pages(benchmark::State& state) {
   const RuleSet rules = large_robot();
   Watched alone(rules);
   Watched seen(rules);
-  web::HttpServer::Options options;
-  options.access.token = web::make_token();
-  const auto server = web::HttpServer::start(options, {}, &seen.hub());
+  http::HttpServer::Options options;
+  options.access.token = http::make_token();
+  const auto server = http::HttpServer::start(options, {}, &seen.hub());
   const Pages reading((*server)->port(), kPages, [] {});
   while (!seen.hub().has_readers()) std::this_thread::yield();
 
@@ -126,10 +126,10 @@ void step_with_pages(benchmark::State& state) {
 BENCHMARK(step_with_pages)->Iterations(5000);
 
 void event_to_page(benchmark::State& state) {
-  web::Hub hub;
-  web::HttpServer::Options options;
-  options.access.token = web::make_token();
-  const auto server = web::HttpServer::start(options, {}, &hub);
+  http::Hub hub;
+  http::HttpServer::Options options;
+  options.access.token = http::make_token();
+  const auto server = http::HttpServer::start(options, {}, &hub);
   std::atomic<int> arrived = 0;
   const Pages reading((*server)->port(), 1, [&] { ++arrived; });
   while (!hub.has_readers()) std::this_thread::yield();
@@ -137,7 +137,7 @@ void event_to_page(benchmark::State& state) {
   for (auto _ : state) {
     const int before = arrived;
     const auto begin = Clock::now();
-    hub.publish(web::Kind::kEvent, "{}");
+    hub.publish(http::Kind::kEvent, "{}");
     while (arrived == before) std::this_thread::yield();
     milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
   }
@@ -191,12 +191,12 @@ void day_of_journal(benchmark::State& state) {
       std::filesystem::temp_directory_path() / ("culprit-bench-day-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   write_day(folder / "day.journal", kBegin);
-  web::Hub hub;
+  http::Hub hub;
   const auto routes = web::incident_routes(hub, folder / "day.journal");
   std::vector<double> milliseconds;
   for (auto _ : state) {
     const auto begin = Clock::now();
-    const web::Answer answer = routes[0].answer({{"since", "1800000000"}});
+    const http::Answer answer = routes[0].answer({{"since", "1800000000"}});
     milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
     if (answer.body["incidents"].size() != 1440) throw std::runtime_error(to_line(answer.body));
   }

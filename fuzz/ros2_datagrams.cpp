@@ -23,6 +23,7 @@
 namespace {
 
 using namespace culprit::ros2;
+namespace rtps = culprit::rtps;
 
 template <class T>
 T must(culprit::Expected<T> value) {
@@ -33,8 +34,8 @@ T must(culprit::Expected<T> value) {
 
 class Arena {
  public:
-  void send(std::uint8_t flags, ByteView bytes) {
-    Bytes datagram(bytes.begin(), bytes.end());
+  void send(std::uint8_t flags, rtps::ByteView bytes) {
+    rtps::Bytes datagram(bytes.begin(), bytes.end());
     if ((flags & 2) != 0 && datagram.size() >= 20)
       std::copy_n(robot_->guid().bytes.begin(), 12, datagram.begin() + 8);
     sockaddr_in to{};
@@ -49,7 +50,7 @@ class Arena {
 
   // The datagrams before it have been looked at, too.
   void speak() {
-    const auto sequence = writer_->write(Bytes{0, 1, 0, 0, 1, 2, 3, 4});
+    const auto sequence = writer_->write(rtps::Bytes{0, 1, 0, 0, 1, 2, 3, 4});
     std::unique_lock lock(mutex_);
     const bool is_heard = heard_changed_.wait_for(lock, std::chrono::seconds(20),
                                                   [&] { return sequence && heard_ >= *sequence; });
@@ -62,7 +63,7 @@ class Arena {
     ParticipantOptions options;
     options.domain = domain;
     options.reach = Reach::kLocalhost;
-    options.never_meets = [](std::string_view topic, EndpointRole) { return topic != "t"; };
+    options.never_meets = [](std::string_view topic, rtps::EndpointRole) { return topic != "t"; };
     return options;
   }
   std::unique_ptr<Participant> join() {
@@ -80,7 +81,7 @@ class Arena {
   std::unique_ptr<Reader> reader_ = must(
       victim_->create_reader({.topic = "t",
                               .type = "T",
-                              .qos = qos::kDiscoveryInfoReader,
+                              .qos = rtps::qos::kDiscoveryInfoReader,
                               .user_data = {},
                               .on_match = {}},
                              [this](const Sample& sample) {
@@ -90,15 +91,16 @@ class Arena {
                                heard_ = std::max(heard_, sample.identity.sequence);
                                heard_changed_.notify_all();
                              }));
-  std::unique_ptr<Writer> writer_ = must(speaker_->create_writer({.topic = "t",
-                                                                  .type = "T",
-                                                                  .qos = qos::kDiscoveryInfoWriter,
-                                                                  .user_data = {},
-                                                                  .on_match = {}}));
+  std::unique_ptr<Writer> writer_ =
+      must(speaker_->create_writer({.topic = "t",
+                                    .type = "T",
+                                    .qos = rtps::qos::kDiscoveryInfoWriter,
+                                    .user_data = {},
+                                    .on_match = {}}));
   std::unique_ptr<Writer> robot_writer_ =
       must(robot_->create_writer({.topic = "t",
                                   .type = "T",
-                                  .qos = qos::kDiscoveryInfoWriter,
+                                  .qos = rtps::qos::kDiscoveryInfoWriter,
                                   .user_data = {},
                                   .on_match = {}}));
 };
@@ -111,7 +113,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::uint8_t flags = data[0];
     const std::size_t length =
         std::min<std::size_t>(static_cast<std::size_t>(data[1]) | (data[2] << 8), size - 3);
-    arena->send(flags, ByteView(data + 3, length));
+    arena->send(flags, rtps::ByteView(data + 3, length));
     data += 3 + length;
     size -= 3 + length;
   }

@@ -27,8 +27,8 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-Guid guid_of(std::uint8_t participant, std::uint8_t entity) {
-  Guid guid;
+rtps::Guid guid_of(std::uint8_t participant, std::uint8_t entity) {
+  rtps::Guid guid;
   guid.bytes[0] = participant % 5;
   guid.bytes[14] = entity / 2;
   guid.bytes[15] = entity % 2 == 0 ? 4 : 3;
@@ -66,7 +66,7 @@ class Books {
   std::set<std::tuple<std::string, EndpointKind, std::string>> edges_;
 };
 
-void apply_info(Graph& graph, std::uint8_t participant, ByteView payload) {
+void apply_info(Graph& graph, std::uint8_t participant, rtps::ByteView payload) {
   auto info = decode_discovery_info(payload);
   if (!info) return;
   const GidSize size = gid_size_of(payload);
@@ -75,7 +75,7 @@ void apply_info(Graph& graph, std::uint8_t participant, ByteView payload) {
   info->participant = guid_of(participant, 0);
   for (NodeEntities& node : info->nodes) {
     for (auto* guids : {&node.readers, &node.writers}) {
-      for (Guid& guid : *guids) guid = guid_of(participant, guid.bytes[15]);
+      for (rtps::Guid& guid : *guids) guid = guid_of(participant, guid.bytes[15]);
     }
   }
   graph.apply(*info);
@@ -89,15 +89,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.listener = [&](const GraphChange& change) { books.enter(change); };
   options.limits = kLimits;
   Graph graph(options);
-  ManagerLease lease({.robot = "robot", .since = 1'000'000, .id = 1, .key = "key"},
-                     guid_of(1, 0).prefix());
+  link::ManagerLease lease({.robot = "robot", .since = 1'000'000, .id = 1, .key = "key"},
+                           guid_of(1, 0).prefix());
   Time now(std::chrono::hours(1));
   while (size >= 4) {
     const std::uint8_t kind = data[0], participant = data[1], entity = data[2];
     const std::size_t length = std::min<std::size_t>(data[3], size - 4);
-    const ByteView bytes(data + 4, length);
+    const rtps::ByteView bytes(data + 4, length);
     const std::string text(bytes.begin(), bytes.end());
-    const Guid guid = guid_of(participant, entity);
+    const rtps::Guid guid = guid_of(participant, entity);
     now += std::chrono::milliseconds(kind);
     switch (kind % 8) {
       case 0:
@@ -107,21 +107,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         graph.apply(ParticipantGone{guid_of(participant, 0)});
         break;
       case 2:
-        graph.apply(EndpointInfo{.guid = guid, .topic = "rt/" + text, .type = "a::msg::dds_::B_"});
+        graph.apply(
+            rtps::EndpointInfo{.guid = guid, .topic = "rt/" + text, .type = "a::msg::dds_::B_"});
         break;
       case 3:
-        graph.apply(EndpointInfo{.guid = guid, .topic = text, .type = text});
+        graph.apply(rtps::EndpointInfo{.guid = guid, .topic = text, .type = text});
         break;
       case 4:
-        graph.apply(EndpointGone{guid});
+        graph.apply(rtps::EndpointGone{guid});
         break;
       case 5:
         apply_info(graph, participant, bytes);
         break;
       case 6:
         lease.apply(
-            EndpointInfo{
-                .guid = guid, .topic = ManagerLease::kTopic, .type = "", .user_data = text},
+            rtps::EndpointInfo{
+                .guid = guid, .topic = link::ManagerLease::kTopic, .type = "", .user_data = text},
             now);
         break;
       case 7:

@@ -20,6 +20,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto reader = FieldReader::compile(library, type, path);
   if (!reader) return 0;
   Value value;
-  reader->read(ByteView(data + 2 + length, size - 2 - length), value);
+  reader->read(rtps::ByteView(data + 2 + length, size - 2 - length), value);
   return 0;
 }

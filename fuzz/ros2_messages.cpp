@@ -16,31 +16,34 @@
 namespace {
 
 using namespace culprit::ros2;
+namespace rtps = culprit::rtps;
 
 void require(bool condition) {
   if (!condition) std::abort();
 }
 
 template <class Message>
-void check(ByteView payload) {
-  const auto message = decode<Message>(payload);
+void check(rtps::ByteView payload) {
+  const auto message = rtps::decode<Message>(payload);
   if (!message) return;
-  const Bytes written = encode(*message);
-  const auto again = decode<Message>(written);
+  const rtps::Bytes written = rtps::encode(*message);
+  const auto again = rtps::decode<Message>(written);
   require(again.has_value());
-  require(encode(*again) == written);
+  require(rtps::encode(*again) == written);
 }
 
-void check_header(ByteView payload) {
+void check_header(rtps::ByteView payload) {
   const auto split = split_header(payload);
   if (!split) return;
   const auto again = split_header(with_header(split->payload, split->header));
   require(again && again->header == split->header);
-  const auto body = [](const Bytes& bytes) { return ByteView(bytes).subspan(kEncapsulationSize); };
+  const auto body = [](const rtps::Bytes& bytes) {
+    return rtps::ByteView(bytes).subspan(rtps::kEncapsulationSize);
+  };
   require(std::ranges::equal(body(again->payload), body(split->payload)));
 }
 
-using Check = void (*)(ByteView);
+using Check = void (*)(rtps::ByteView);
 constexpr Check kChecks[] = {
     check<msg::DiagnosticArray>,
     check<msg::Image>,
@@ -65,6 +68,6 @@ constexpr Check kChecks[] = {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  kChecks[data[0] % std::size(kChecks)](ByteView(data + 1, size - 1));
+  kChecks[data[0] % std::size(kChecks)](rtps::ByteView(data + 1, size - 1));
   return 0;
 }

@@ -32,8 +32,8 @@ mkdirSync(dirname(output), { recursive: true })
 writeFileSync(
   output,
   `// Generated from ui/ by build.mjs: ${size} bytes.\n#include "web/app.h"\n\nnamespace culprit::web {\nnamespace {\n\n` +
-    `${parts.join('\n')}\nconstexpr Asset kAssets[] = {\n${table.join('')}};\n\n}  // namespace\n\n` +
-    `std::span<const Asset> app() { return kAssets; }\n\n}  // namespace culprit::web\n`
+    `${parts.join('\n')}\nconstexpr http::Asset kAssets[] = {\n${table.join('')}};\n\n}  // namespace\n\n` +
+    `std::span<const http::Asset> app() { return kAssets; }\n\n}  // namespace culprit::web\n`
 )
 writeFileSync(noticesFile, bundled.notices)
 console.log(`web app: ${size} bytes compressed`)

@@ -76,7 +76,7 @@ class Deafness {
     for (const auto& task : std::filesystem::directory_iterator(tasks)) {
       std::string name;
       std::ifstream(task.path() / "comm") >> name;
-      if (name == ros2::ReceiveThread::kName) threads.push_back(std::stoi(task.path().filename()));
+      if (name == rtps::ReceiveThread::kName) threads.push_back(std::stoi(task.path().filename()));
     }
     return threads;
   }

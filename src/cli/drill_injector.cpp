@@ -79,7 +79,7 @@ Expected<ros2::Client<Service>*> client_in(Clients& clients, ros2::Node& self,
                                            const std::string& node, const char* service) {
   auto& client = clients[node];
   if (client == nullptr) {
-    auto made = self.create_client<Service>(node + service, ros2::qos::kParameterServices);
+    auto made = self.create_client<Service>(node + service, rtps::qos::kParameterServices);
     if (!made) return Error{made.error()};
     client = std::move(*made);
   }
@@ -138,9 +138,9 @@ Expected<ros2::ServiceClient*> DrillNode::lifecycle_client(const std::string& no
   if (client == nullptr) {
     auto made = ros2::ServiceClient::create(
         node_->entry(), {node + "/change_state", std::string(ros2::srv::ChangeState::kType)},
-        ros2::qos::kServices,
+        rtps::qos::kServices,
         {{node + "/get_state", std::string(ros2::srv::GetState::kType)},
-         ros2::encode(ros2::srv::GetState::Request{})});
+         rtps::encode(ros2::srv::GetState::Request{})});
     if (!made) return Error{made.error()};
     client = std::move(*made);
   }
@@ -153,10 +153,10 @@ Expected<std::string> DrillNode::lifecycle(const std::string& node) {
   const auto promise = std::make_shared<std::promise<std::string>>();
   auto future = promise->get_future();
   (*client)->probe()->call(
-      ros2::encode(ros2::srv::GetState::Request{}), ros2::Repeat::kUntilAnswered, kAnswerWithin,
+      rtps::encode(ros2::srv::GetState::Request{}), ros2::Repeat::kUntilAnswered, kAnswerWithin,
       [promise](const ros2::CallResult& result) {
         const auto response = result.outcome == ros2::CallOutcome::kAnswered
-                                  ? ros2::decode<ros2::srv::GetState::Response>(result.reply)
+                                  ? rtps::decode<ros2::srv::GetState::Response>(result.reply)
                                   : std::nullopt;
         promise->set_value(response ? response->current_state.label : "");
       });
@@ -170,11 +170,11 @@ Expected<void> DrillNode::change(const std::string& node, std::uint8_t transitio
   if (!client) return Error{client.error()};
   const auto promise = std::make_shared<std::promise<std::optional<bool>>>();
   auto future = promise->get_future();
-  (*client)->call(ros2::encode(ros2::srv::ChangeState::Request{{transition, ""}}),
+  (*client)->call(rtps::encode(ros2::srv::ChangeState::Request{{transition, ""}}),
                   ros2::Repeat::kNever, kAnswerWithin, [promise](const ros2::CallResult& result) {
                     const auto response =
                         result.outcome == ros2::CallOutcome::kAnswered
-                            ? ros2::decode<ros2::srv::ChangeState::Response>(result.reply)
+                            ? rtps::decode<ros2::srv::ChangeState::Response>(result.reply)
                             : std::nullopt;
                     promise->set_value(response ? std::optional(response->success) : std::nullopt);
                   });

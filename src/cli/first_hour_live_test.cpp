@@ -54,9 +54,9 @@ void bring_up(const std::string& node) {
   ros2::NodeEntry self(*context, {"/", "_launcher"});
   const auto client = ros2::ServiceClient::create(
       self, {node + "/change_state", std::string(ros2::srv::ChangeState::kType)},
-      ros2::qos::kServices,
+      rtps::qos::kServices,
       {{node + "/get_state", std::string(ros2::srv::GetState::kType)},
-       ros2::encode(ros2::srv::GetState::Request{})});
+       rtps::encode(ros2::srv::GetState::Request{})});
   ASSERT_TRUE(client);
   for (const std::uint8_t transition : {1, 3}) EXPECT_TRUE(ros2::change(**client, transition));
 }

@@ -17,10 +17,10 @@ std::string author_of_order() {
   return user != nullptr ? user->pw_name : "user " + std::to_string(geteuid());
 }
 
-OutcomeOfOrder outcome_of(const web::Answer& answer) {
-  const std::string error = web::text_of(answer.body, "error").value_or("");
+OutcomeOfOrder outcome_of(const http::Answer& answer) {
+  const std::string error = http::text_of(answer.body, "error").value_or("");
   if (answer.status >= 400) return {false, "refused: " + error, answer.body};
-  const std::string text = web::text_of(answer.body, "order").value_or("");
+  const std::string text = http::text_of(answer.body, "order").value_or("");
   if (answer.status != 200)
     return {false,
             "NOT CONFIRMED: culprit has the order, but its decision loop did not take it within " +
@@ -31,7 +31,7 @@ OutcomeOfOrder outcome_of(const web::Answer& answer) {
   if (kept->is_boolean() && kept->get<bool>())
     return {true, text + "; it also holds after a restart of culprit", answer.body};
   return {false,
-          text + "; " + web::text_of(answer.body, "text").value_or("not kept") +
+          text + "; " + http::text_of(answer.body, "text").value_or("not kept") +
               ". A restart of culprit would forget it",
           answer.body};
 }
@@ -52,11 +52,11 @@ std::vector<OutcomeOfOrder> give_all(const std::vector<RunningCulprit>& culprits
     order["wait_s"] = seconds(kPatienceWithCulprit - kMargin);
     order["valid_until"] = seconds(live_now().time_since_epoch() + kPatienceWithCulprit);
   }
-  std::vector<web::LocalClient> clients;
+  std::vector<http::LocalClient> clients;
   for (const RunningCulprit& each : culprits) clients.push_back(each.client);
   std::vector<OutcomeOfOrder> outcomes;
-  for (const auto& answer : web::LocalClient::ask_all(clients, web::Method::kPost, "/api/orders",
-                                                      orders, kPatienceWithCulprit)) {
+  for (const auto& answer : http::LocalClient::ask_all(clients, http::Method::kPost, "/api/orders",
+                                                       orders, kPatienceWithCulprit)) {
     outcomes.push_back(answer ? outcome_of(*answer)
                               : OutcomeOfOrder{false, "NOT CONFIRMED: " + answer.error() +
                                                           "; culprit status shows what holds"});

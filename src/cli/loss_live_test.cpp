@@ -34,7 +34,7 @@ class Talker {
     publisher_ = std::move(*ros2::RawPublisher::create(node_->node().entry(), "/chatter",
                                                        "builtin_interfaces/msg/Time", {}));
     timer_ = std::make_unique<ros2::Timer>(context_->executor(), 50ms, [this] {
-      publisher_->publish(ros2::encode(ros2::msg::Time{++said_, 0}));
+      publisher_->publish(rtps::encode(ros2::msg::Time{++said_, 0}));
     });
   }
   ~Talker() {

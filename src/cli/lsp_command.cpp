@@ -39,7 +39,7 @@ bool input_by(Time end) {
 // server needs none.
 class Watch {
  public:
-  Watch(lsp::LanguageServer& server, ros2::Survey& survey)
+  Watch(lsp::LanguageServer& server, link::Survey& survey)
       : server_(server), survey_(survey), next_(live_now() + kDiscovery) {}
 
   // Returns when the client has sent something.
@@ -61,7 +61,7 @@ class Watch {
   }
 
   lsp::LanguageServer& server_;
-  ros2::Survey& survey_;
+  link::Survey& survey_;
   Time next_;
   LiveInterest asked_;
 };
@@ -75,7 +75,7 @@ int serve(const std::string& version, const LspOptions& options) {
   lsp::LanguageServer server(version,
                              [](const Json& message) { lsp::write_message(std::cout, message); },
                              {load, rule_files::includable});
-  std::unique_ptr<ros2::Survey> survey;
+  std::unique_ptr<link::Survey> survey;
   std::optional<Watch> watch;
   if (options.robot) {
     auto opened = live::open_survey(options.message_path);

@@ -20,7 +20,7 @@ struct NamesOptions {
 // The answer to GET `path`, or an empty document.
 Json ask(const RunningCulprit& culprit, const std::string& path) {
   auto answer =
-      culprit.client.with_patience(kTimeToAnswer).get(path, web::LocalClient::kLargeAnswer);
+      culprit.client.with_patience(kTimeToAnswer).get(path, http::LocalClient::kLargeAnswer);
   return answer && answer->is_object() ? std::move(*answer) : Json::object();
 }
 
@@ -29,7 +29,7 @@ void append_texts(const Json& document, const char* list, const char* member,
   const auto all = document.find(list);
   if (all == document.end() || !all->is_array()) return;
   for (const Json& each : *all) {
-    if (auto name = web::text_of(each, member)) names.push_back(std::move(*name));
+    if (auto name = http::text_of(each, member)) names.push_back(std::move(*name));
   }
 }
 
@@ -40,7 +40,7 @@ void add_strategies(const Json& robot, std::vector<std::string>& names) {
     std::vector<std::string> own;
     if (rule.is_object()) append_texts(rule, "strategies", "name", own);
     for (const std::string& strategy : own)
-      names.push_back(web::text_of(rule, "name").value_or("") + "." + strategy);
+      names.push_back(http::text_of(rule, "name").value_or("") + "." + strategy);
   }
 }
 

@@ -163,9 +163,9 @@ TEST_F(Neighbours, ProcessesWithNodesOfOneNameAreNamedAsLongAsTheyAreThere) {
   EXPECT_THAT(culprit.output(), HasSubstr("process " + std::to_string(two.pid()) + " ("));
   EXPECT_THAT(culprit.output(), HasSubstr("set respawn to False"));
   // For who comes late.
-  ros2::Survey::Options options;
+  link::Survey::Options options;
   options.participant = *ros2::options_from_environment();
-  const auto survey = ros2::Survey::open(std::move(options));
+  const auto survey = link::Survey::open(std::move(options));
   ASSERT_TRUE(survey) << survey.error();
   const auto is_said = [&] {
     for (const auto& status : (*survey)->inventory().diagnostics) {

@@ -103,13 +103,13 @@ class TwoFaults {
   // The data of `status`, `top` and the page.
   WhatCulpritSays said() const {
     WhatCulpritSays said;
-    said.robot = parse_json(*hub_.latest(web::Kind::kRobot));
-    said.state = parse_json(*hub_.latest(web::Kind::kState));
-    said.control = parse_json(*hub_.latest(web::Kind::kControl));
+    said.robot = parse_json(*hub_.latest(http::Kind::kRobot));
+    said.state = parse_json(*hub_.latest(http::Kind::kState));
+    said.control = parse_json(*hub_.latest(http::Kind::kControl));
     return said;
   }
   Json asked(const std::filesystem::path& journal) {
-    for (const web::Route& route : web::incident_routes(hub_, journal, {})) {
+    for (const http::Route& route : web::incident_routes(hub_, journal, {})) {
       if (route.path == "/api/incidents") return route.answer({{"since", "0"}}).body["incidents"];
     }
     return nullptr;
@@ -137,8 +137,8 @@ class TwoFaults {
   const std::filesystem::path path_ = folder_ / "a.journal";
   journal::Batch rows_;
   mutable std::optional<TestRobot> robot_;
-  web::Hub hub_;
-  const web::Hub::Reader watching_{hub_};
+  http::Hub hub_;
+  const http::Hub::Reader watching_{hub_};
   web::Metrics metrics_;
   web::HubObserver page_{hub_, metrics_, [this] { return 1e-9 * static_cast<double>(wall()); }};
   live::Alerting alerting_{{},

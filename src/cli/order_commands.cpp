@@ -39,7 +39,7 @@ std::vector<std::string> names_in(const Json& document, const char* list) {
   std::vector<std::string> names;
   if (!document.is_object() || !document.contains(list) || !document[list].is_array()) return names;
   for (const Json& each : document[list]) {
-    if (auto name = web::text_of(each, "name")) names.push_back(std::move(*name));
+    if (auto name = http::text_of(each, "name")) names.push_back(std::move(*name));
   }
   return names;
 }
@@ -48,12 +48,12 @@ using MakeOrder = std::function<Expected<Json>(const RunningCulprit&, const Orde
 
 // {"rule": …, "strategy": …} of "Rule.strategy", or of a strategy whose name is the only one of its kind.
 Expected<Json> strategy_named(const RunningCulprit& culprit, const std::string& name) {
-  const auto robot = culprit.client.get("/api/robot", web::LocalClient::kLargeAnswer);
+  const auto robot = culprit.client.get("/api/robot", http::LocalClient::kLargeAnswer);
   if (!robot) return Error{robot.error()};
   std::vector<Json> found;
   std::vector<std::string> known;
   for (const Json& rule : robot->value("rules", Json::array())) {
-    const std::string of_rule = web::text_of(rule, "name").value_or("");
+    const std::string of_rule = http::text_of(rule, "name").value_or("");
     for (const std::string& strategy : names_in(rule, "strategies")) {
       known.push_back(of_rule + "." + strategy);
       if (name == known.back() || name == strategy)
@@ -64,7 +64,7 @@ Expected<Json> strategy_named(const RunningCulprit& culprit, const std::string& 
   if (found.empty())
     return Error{"the rules have no strategy '" + printable(name) + "'" + suggestion(name, known)};
   return Error{"several rules have a strategy '" + name + "'; name the rule, too: " +
-               web::text_of(found.front(), "rule").value_or("") + "." + name};
+               http::text_of(found.front(), "rule").value_or("") + "." + name};
 }
 
 MakeOrder about_strategy(const char* word) {
@@ -76,7 +76,7 @@ MakeOrder about_strategy(const char* word) {
 }
 
 Expected<Json> mute_of(const RunningCulprit& culprit, const OrderOptions& options) {
-  const auto robot = culprit.client.get("/api/robot", web::LocalClient::kLargeAnswer);
+  const auto robot = culprit.client.get("/api/robot", http::LocalClient::kLargeAnswer);
   if (!robot) return Error{robot.error()};
   const auto components = names_in(*robot, "components");
   const auto rules = names_in(*robot, "rules");
@@ -144,11 +144,11 @@ Json seconds_left(const Json& mute, double now) {
 std::string mute_line(const Json& mute) {
   const bool is_rule = mute.contains("rule");
   std::string line = (is_rule ? "rule " : "component ") +
-                     web::text_of(mute, is_rule ? "rule" : "component").value_or("");
+                     http::text_of(mute, is_rule ? "rule" : "component").value_or("");
   if (const auto left = mute.find("left_s"); left != mute.end() && left->is_number())
     line += ", for another " + in_words(from_seconds(left->get<double>()));
-  const std::string author = web::text_of(mute, "author").value_or("");
-  const std::string reason = web::text_of(mute, "reason").value_or("");
+  const std::string author = http::text_of(mute, "author").value_or("");
+  const std::string reason = http::text_of(mute, "reason").value_or("");
   if (!author.empty()) line += ", by " + author;
   return reason.empty() ? line : line + ": " + reason;
 }
@@ -168,8 +168,8 @@ int list_mutes(const OrderOptions& options) {
   Json list = Json::array();
   for (const RunningCulprit& culprit : here->answering) {
     // The state is a new one, and culprit publishes what is muted before it.
-    const auto state = culprit.client.get("/api/state", web::LocalClient::kLargeAnswer);
-    const auto control = culprit.client.get("/api/control", web::LocalClient::kLargeAnswer);
+    const auto state = culprit.client.get("/api/state", http::LocalClient::kLargeAnswer);
+    const auto control = culprit.client.get("/api/control", http::LocalClient::kLargeAnswer);
     if (!control || !state)
       return fail(culprit.name() +
                   " does not answer: " + (control ? state.error() : control.error()));

@@ -48,8 +48,8 @@ Expected<std::uint32_t> domain() {
   return options ? Expected<std::uint32_t>(options->domain) : Error{options.error()};
 }
 
-ros2::Rights rights(const RuleSet& rules, const PolicyOptions& options) {
-  ros2::Rights rights = ros2::rights_of(rules, kSelf);
+link::Rights rights(const RuleSet& rules, const PolicyOptions& options) {
+  link::Rights rights = link::rights_of(rules, kSelf);
   if (!options.snapshot_of.empty()) {
     rights.calls.push_back(live::Snapshots::service_of(options.snapshot_of));
     std::ranges::sort(rights.calls);
@@ -61,7 +61,7 @@ Expected<std::string> sros2_form(const RuleSet& rules, const PolicyOptions& opti
   advise(
       fmt::format("make signed permissions of it: ros2 security create_permission KEYSTORE {} {}",
                   options.enclave, file_of(options, "FILE")));
-  return ros2::sros2_policy(rights(rules, options), kSelf, options.enclave);
+  return link::sros2_policy(rights(rules, options), kSelf, options.enclave);
 }
 
 Expected<std::string> permissions_form(const RuleSet& rules, const PolicyOptions& options) {
@@ -76,7 +76,7 @@ Expected<std::string> permissions_form(const RuleSet& rules, const PolicyOptions
       "-out permissions.p7s -signer KEYSTORE/public/permissions_ca.cert.pem -inkey "
       "KEYSTORE/private/permissions_ca.key.pem",
       file_of(options, "permissions.xml")));
-  return ros2::permissions(rights(rules, options), options.enclave, *number,
+  return link::permissions(rights(rules, options), options.enclave, *number,
                            {day(now), day(now + std::chrono::hours(24) * options.days)});
 }
 

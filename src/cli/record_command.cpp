@@ -18,15 +18,15 @@ int record(const RecordOptions& options) {
   const auto culprit = the_culprit(options.which);
   if (!culprit) return fail(culprit.error() + "\nNothing is recorded.");
   const auto answer =
-      culprit->client.ask(web::Method::kPost, "/api/recordings", {{"reason", options.name}});
+      culprit->client.ask(http::Method::kPost, "/api/recordings", {{"reason", options.name}});
   if (!answer) return fail(answer.error());
-  const std::string error = web::text_of(answer->body, "error").value_or("");
+  const std::string error = http::text_of(answer->body, "error").value_or("");
   if (answer->status != 200) return fail("nothing is recorded: " + error);
   if (options.json) {
     say(stdout, "{}\n", to_line(answer->body));
   } else {
     say(stdout, "{}: recording to {}\n", culprit->name(),
-        escape_controls(web::text_of(answer->body, "recording").value_or("")));
+        escape_controls(http::text_of(answer->body, "recording").value_or("")));
   }
   return kOk;
 }

@@ -40,7 +40,7 @@ std::vector<HeardMessage> messages_in(const std::filesystem::path& path) {
     HeardMessage heard{message.at, topic.name, ""};
     if (topic.type == ros2::msg::String::kType) {
       const auto* begin = reinterpret_cast<const std::uint8_t*>(message.bytes.data());
-      if (const auto said = ros2::decode<ros2::msg::String>({begin, message.bytes.size()}))
+      if (const auto said = rtps::decode<ros2::msg::String>({begin, message.bytes.size()}))
         heard.text = said->data;
     }
     all.push_back(std::move(heard));

@@ -14,7 +14,7 @@
 namespace culprit::cli {
 namespace {
 
-using ros2::Durability;
+using rtps::Durability;
 
 using ros_api::TestRosNode;
 using testing::HasSubstr;

@@ -32,7 +32,7 @@ Expected<live::RoleOfCulprit> claim_robot(const RuleSet& rules, const RunOptions
   if (!participant) return Error{participant.error()};
   std::string key;
   if (!options.lease_key.empty()) {
-    auto read = web::read_secret(options.lease_key, "key");
+    auto read = http::read_secret(options.lease_key, "key");
     if (!read) return Error{read.error()};
     key = std::move(*read);
   }
@@ -43,24 +43,24 @@ std::string name_of(const RuleSet& rules) {
   return rules.robot.empty() ? "the robot" : rules.robot;
 }
 
-void add(std::vector<web::Route>& all, std::vector<web::Route> more) {
-  for (web::Route& route : more) all.push_back(std::move(route));
+void add(std::vector<http::Route>& all, std::vector<http::Route> more) {
+  for (http::Route& route : more) all.push_back(std::move(route));
 }
 
 // The longest wait of a person.
 constexpr Duration kDiskAnswers = std::chrono::seconds(3);
 
 // The calls for terminals of this machine, and for the page.
-std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
-                                     web::OrderDesk& orders, live::LiveRun& live,
-                                     RunRecording* recording) {
+std::vector<http::Route> local_routes(http::Hub& hub, const web::Metrics& metrics,
+                                      web::OrderDesk& orders, live::LiveRun& live,
+                                      RunRecording* recording) {
   web::RecordNow record;
   if (recording != nullptr) {
     record = [recording](const std::string& why) {
       return recording->recorder().record_now(why, kDiskAnswers);
     };
   }
-  std::vector<web::Route> all = web::live_routes(hub);
+  std::vector<http::Route> all = web::live_routes(hub);
   add(all, web::recording_routes(std::move(record)));
   add(all, web::order_routes(orders, hub));
   add(all, web::status_routes(hub, metrics));
@@ -68,18 +68,18 @@ std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
   return all;
 }
 
-std::vector<web::Route> page_routes(web::Hub& hub, const web::Histories& histories,
-                                    web::RuleDesk& desk, live::RobotNames& names,
-                                    const std::filesystem::path& journal,
-                                    const std::filesystem::path& recordings,
-                                    PlannerFactory planner) {
+std::vector<http::Route> page_routes(http::Hub& hub, const web::Histories& histories,
+                                     web::RuleDesk& desk, live::RobotNames& names,
+                                     const std::filesystem::path& journal,
+                                     const std::filesystem::path& recordings,
+                                     PlannerFactory planner) {
   const auto look = [&names](const LiveInterest& interest) { return names.look(interest); };
   const auto log_of = [&names](const std::string& node) { return names.log_of(node); };
   const auto journal_of = [journal](const std::string&) -> Expected<std::filesystem::path> {
     if (journal.empty()) return Error{"no journal is written (--no-journal)"};
     return journal;
   };
-  std::vector<web::Route> all = web::rule_routes(desk);
+  std::vector<http::Route> all = web::rule_routes(desk);
   add(all, web::name_routes(look, desk.loader()));
   add(all, web::incident_routes(hub, journal, recordings));
   add(all, web::doctor_routes(web::examine_robot));
@@ -146,7 +146,7 @@ class Run {
   const std::unique_ptr<live::Fleet> fleet_;
   const std::unique_ptr<RunAlerts> alerts_;
   const std::unique_ptr<live::Listener> listener_;
-  web::Hub hub_;
+  http::Hub hub_;
   web::Metrics metrics_;
   web::HubObserver observer_;
   web::Histories histories_;
@@ -160,7 +160,7 @@ class Run {
   std::vector<int> others_;
   web::RuleDesk desk_;
   live::RobotNames names_;
-  std::unique_ptr<web::HttpServer> page_;
+  std::unique_ptr<http::HttpServer> page_;
   std::unique_ptr<LocalService> local_;
 };
 
@@ -215,7 +215,7 @@ ros_api::OrderServices::Give Run::orders_over_dds(bool has_keys) {
 }
 
 Expected<void> Run::serve_page() {
-  std::vector<web::Route> routes = local_routes(hub_, metrics_, orders_, live_, recording_.get());
+  std::vector<http::Route> routes = local_routes(hub_, metrics_, orders_, live_, recording_.get());
   add(routes,
       page_routes(hub_, histories_, desk_, names_, journal_,
                   options_.recording.folder_in(options_.state_path()), options_.planner.factory()));

@@ -44,7 +44,7 @@ class RunRecording {
     std::string robot;
     std::filesystem::path state;  // the folder
     ros2::ParticipantOptions participant;
-    ros2::TypeFinder::Options types;
+    link::TypeFinder::Options types;
   };
   // Null if it is not on. Errors: the domain cannot be joined.
   static Expected<std::unique_ptr<RunRecording>> open(const RecordingOptions& options,

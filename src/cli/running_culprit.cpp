@@ -87,7 +87,7 @@ void add_once(std::vector<std::string>& lines, std::string line) {
 }
 
 std::string text_in(const Json& json, const char* member) {
-  return web::text_of(json, member).value_or("");
+  return http::text_of(json, member).value_or("");
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ Expected<CulpritsHere> culprits_here(const WhichCulprit& which) {
   if (!domain) return Error{domain.error()};
   CulpritsHere here;
   std::vector<LocalSocket> asked;
-  std::vector<web::LocalClient> clients;
+  std::vector<http::LocalClient> clients;
   for (LocalSocket& socket : live::local_sockets(*query)) {
     const bool is_meant = !*domain || socket.domain == **domain;
     if (socket.state == LocalSocket::State::kForbidden) {
@@ -146,7 +146,7 @@ Expected<CulpritsHere> culprits_here(const WhichCulprit& which) {
     }
   }
   auto answers =
-      web::LocalClient::ask_all(clients, web::Method::kGet, "/api/about", {}, kTimeToAnswer);
+      http::LocalClient::ask_all(clients, http::Method::kGet, "/api/about", {}, kTimeToAnswer);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     const LocalSocket& socket = asked[i];
     if (!answers[i] || answers[i]->status != 200) {

@@ -18,7 +18,7 @@ namespace culprit::cli {
 struct RunningCulprit {
   int process = 0;
   Json about;  // GET /api/about
-  web::LocalClient client;
+  http::LocalClient client;
 
   // "culprit of rover (process 4711, domain 0)"
   std::string name() const;

@@ -44,7 +44,7 @@ class Simulator {
   void tick() {
     if (runs) shown_ += 20ms;
     const auto whole = std::chrono::duration_cast<std::chrono::seconds>(shown_);
-    publisher_->publish(ros2::encode(ros2::msg::Time{
+    publisher_->publish(rtps::encode(ros2::msg::Time{
         static_cast<std::int32_t>(whole.count()) + day * 86'400,
         static_cast<std::uint32_t>((shown_ - whole) / std::chrono::nanoseconds(1))}));
   }

@@ -28,11 +28,11 @@ Expected<WhatCulpritSays> asked(const RunningCulprit& culprit) {
   for (const auto& [path, document] :
        {std::pair("/api/robot", &said.robot), std::pair("/api/state", &said.state),
         std::pair("/api/control", &said.control)}) {
-    auto answer = culprit.client.get(path, web::LocalClient::kLargeAnswer);
+    auto answer = culprit.client.get(path, http::LocalClient::kLargeAnswer);
     if (!answer) return Error{answer.error()};
     *document = std::move(*answer);
   }
-  if (auto events = culprit.client.get("/api/events", web::LocalClient::kLargeAnswer);
+  if (auto events = culprit.client.get("/api/events", http::LocalClient::kLargeAnswer);
       events && events->is_array())
     said.events = events->get<std::vector<Json>>();
   return said;

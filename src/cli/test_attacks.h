@@ -21,7 +21,7 @@ struct Target {
   int page = 0;                                // port
   ros2::Eavesdropper* eavesdropper = nullptr;  // in the network where the attack comes from
 
-  std::vector<ros2::UdpAddress> ports() const { return eavesdropper->ports_of(culprit); }
+  std::vector<rtps::UdpAddress> ports() const { return eavesdropper->ports_of(culprit); }
 };
 
 enum class Place : std::uint8_t {

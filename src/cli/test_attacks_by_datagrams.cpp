@@ -27,14 +27,14 @@ namespace culprit::cli {
 namespace {
 
 using namespace std::chrono_literals;
-using ros2::Bytes;
-using ros2::Guid;
-using ros2::TestDatagram;
-using ros2::TestParameters;
+using rtps::Bytes;
+using rtps::Guid;
+using rtps::TestDatagram;
+using rtps::TestParameters;
 
 Ongoing sends(const Target& target, const std::vector<Bytes>& datagrams,
               std::chrono::milliseconds pause = 200ms) {
-  return std::make_shared<ros2::HostileProcess>(datagrams, target.ports(), pause);
+  return std::make_shared<rtps::HostileProcess>(datagrams, target.ports(), pause);
 }
 
 // ---- in the camera's name
@@ -43,7 +43,7 @@ Ongoing endpoints_end(const Target& target) {
   const auto camera = target.eavesdropper->of(target.camera);
   std::vector<Guid> all;
   for (const auto& each : camera.endpoints) all.push_back(each.guid);
-  return sends(target, ros2::farewells_of_endpoints(camera.participant, all));
+  return sends(target, rtps::farewells_of_endpoints(camera.participant, all));
 }
 // The writer of the topic that a rule watches.
 Ongoing picture_writer_ends(const Target& target) {
@@ -52,16 +52,16 @@ Ongoing picture_writer_ends(const Target& target) {
   for (const auto& each : camera.endpoints) {
     if (!each.guid.is_reader() && each.topic.ends_with("rgb_camera")) all.push_back(each.guid);
   }
-  return sends(target, ros2::farewells_of_endpoints(camera.participant, all));
+  return sends(target, rtps::farewells_of_endpoints(camera.participant, all));
 }
 Ongoing good_byes(const Target& target) {
-  return sends(target, {ros2::farewell_of(target.eavesdropper->of(target.camera).participant)});
+  return sends(target, {rtps::farewell_of(target.eavesdropper->of(target.camera).participant)});
 }
 Ongoing holds_no_node(const Target& target) {
   const auto camera = target.eavesdropper->of(target.camera);
   const Bytes info =
       ros2::encode_discovery_info({camera.participant, {}}, ros2::GidSize::kHumbleAndOlder);
-  return sends(target, ros2::forged_info(camera.participant, camera.info_writer, info));
+  return sends(target, rtps::forged_info(camera.participant, camera.info_writer, info));
 }
 Ongoing all_farewells(const Target& target) {
   return sends(target, target.eavesdropper->farewells_of(target.camera));
@@ -74,15 +74,15 @@ Ongoing all_farewells_all_the_time(const Target& target) {
 
 Ongoing disguised_farewells(const Target& target) {
   const Guid camera = target.eavesdropper->of(target.camera).participant;
-  std::vector<Bytes> all = {ros2::announcement_of(5)};
-  std::ranges::copy(ros2::disguised_farewells(camera, ros2::made_up(5).prefix()),
+  std::vector<Bytes> all = {rtps::announcement_of(5)};
+  std::ranges::copy(rtps::disguised_farewells(camera, rtps::made_up(5).prefix()),
                     std::back_inserter(all));
   return sends(target, all, 20ms);
 }
 Ongoing smuggled_farewells(const Target& target) {
   const Guid camera = target.eavesdropper->of(target.camera).participant;
-  std::vector<Bytes> all = {ros2::announcement_of(5)};
-  std::ranges::copy(ros2::smuggled_farewells(camera, ros2::made_up(5).prefix()),
+  std::vector<Bytes> all = {rtps::announcement_of(5)};
+  std::ranges::copy(rtps::smuggled_farewells(camera, rtps::made_up(5).prefix()),
                     std::back_inserter(all));
   return sends(target, all, 20ms);
 }
@@ -104,12 +104,12 @@ std::vector<Bytes> samples(const Guid& writer, const Bytes& payload) {
 Ongoing diagnostics_in_its_name(const Target& target) {
   ros2::msg::DiagnosticArray array;
   array.status = {{2, "camera_heartbeat", "broken", "camera", {}}};
-  return sends(target, samples(writer_of(target, "/diagnostics"), ros2::encode(array)), 20ms);
+  return sends(target, samples(writer_of(target, "/diagnostics"), rtps::encode(array)), 20ms);
 }
 Ongoing transitions_in_its_name(const Target& target) {
   ros2::msg::TransitionEvent event;
   event.goal_state.id = static_cast<std::uint8_t>(LifecycleState::kInactive);
-  return sends(target, samples(writer_of(target, "/transition_event"), ros2::encode(event)), 20ms);
+  return sends(target, samples(writer_of(target, "/transition_event"), rtps::encode(event)), 20ms);
 }
 // The writers of the camera and of culprit itself, those that announce others too.
 std::vector<Guid> writers_of_both(const Target& target) {
@@ -141,10 +141,10 @@ Ongoing absurd_heartbeats(const Target& target) {
 // Those of a participant that is there pass the check of their origin.
 Ongoing absurd_ranges(const Target& target) {
   std::vector<Guid> writers = writers_of_both(target);
-  for (const std::uint8_t entity : {3, 4}) writers.push_back(ros2::made_up(6, 0, entity));
-  std::vector<Bytes> all = {ros2::announcement_of(6)};
+  for (const std::uint8_t entity : {3, 4}) writers.push_back(rtps::made_up(6, 0, entity));
+  std::vector<Bytes> all = {rtps::announcement_of(6)};
   for (const Guid& each : writers)
-    std::ranges::copy(ros2::absurd_ranges(each), std::back_inserter(all));
+    std::ranges::copy(rtps::absurd_ranges(each), std::back_inserter(all));
   return sends(target, all);
 }
 // Each would take 20 MB.
@@ -158,7 +158,7 @@ Ongoing huge_fragments(const Target& target) {
 }
 
 // The datagrams that the camera sent: root can listen to loopback.
-std::vector<Bytes> recorded(const ros2::GuidPrefix& sender, Duration length) {
+std::vector<Bytes> recorded(const rtps::GuidPrefix& sender, Duration length) {
   std::vector<Bytes> all;
   const int descriptor =
       socket(AF_PACKET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, htons(ETH_P_IP));
@@ -186,14 +186,14 @@ Ongoing replays(const Target& target) {
 
 Ongoing a_thousand_participants(const Target& target) {
   std::vector<Bytes> all;
-  for (std::uint16_t i = 0; i < 1100; ++i) all.push_back(ros2::announcement_of(i));
+  for (std::uint16_t i = 0; i < 1100; ++i) all.push_back(rtps::announcement_of(i));
   return sends(target, all, 500ms);
 }
 Ongoing ten_thousand_endpoints(const Target& target) {
-  std::vector<Bytes> all = {ros2::announcement_of(7)};
-  const Guid announcer = ros2::made_up(7, 0, 3);
+  std::vector<Bytes> all = {rtps::announcement_of(7)};
+  const Guid announcer = rtps::made_up(7, 0, 3);
   for (std::int64_t i = 1; i <= 10'000; ++i) {
-    Guid writer = ros2::made_up(7);
+    Guid writer = rtps::made_up(7);
     writer.bytes[12] = 1, writer.bytes[13] = static_cast<std::uint8_t>(i >> 8);
     writer.bytes[14] = static_cast<std::uint8_t>(i), writer.bytes[15] = 3;
     const Bytes said = TestParameters()
@@ -219,7 +219,7 @@ Ongoing random_bytes(const Target& target) {
 Ongoing malformed(const Target& target) {
   std::mt19937 random(2);
   std::vector<Bytes> right = target.eavesdropper->farewells_of(target.camera);
-  right.push_back(ros2::announcement_of(3));
+  right.push_back(rtps::announcement_of(3));
   std::vector<Bytes> all;
   for (int i = 0; i < 2000; ++i) {
     Bytes bytes = right[random() % right.size()];
@@ -231,16 +231,16 @@ Ongoing malformed(const Target& target) {
   return sends(target, all, 20ms);
 }
 Ongoing endless_submessages(const Target& target) {
-  TestDatagram many(ros2::made_up(9).prefix());
+  TestDatagram many(rtps::made_up(9).prefix());
   for (int i = 0; i < 8000; ++i) many.submessage(0x01, 0, {});
-  TestDatagram unknown(ros2::made_up(9).prefix());
+  TestDatagram unknown(rtps::made_up(9).prefix());
   for (int i = 0; i < 256; ++i)
     unknown.submessage(static_cast<std::uint8_t>(i), 0xff, Bytes(60, 0xff));
   return sends(target, {many.bytes(), unknown.bytes()}, 5ms);
 }
 // As many as the machine sends.
 Ongoing as_many_as_it_can(const Target& target) {
-  return sends(target, {ros2::announcement_of(1), Bytes(1400, 0), Bytes(20, 'R')}, 0ms);
+  return sends(target, {rtps::announcement_of(1), Bytes(1400, 0), Bytes(20, 'R')}, 0ms);
 }
 
 }  // namespace

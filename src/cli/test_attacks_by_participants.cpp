@@ -28,7 +28,7 @@ using namespace std::chrono_literals;
 constexpr const char* kCamera = "/managed_subsystem/camera";
 constexpr const char* kPictures = "/managed_subsystem/rgb_camera";
 
-using Lies = std::vector<ros2::Bytes>;
+using Lies = std::vector<rtps::Bytes>;
 
 ros2::ParticipantOptions own_options() { return *ros2::options_from_environment(); }
 
@@ -40,7 +40,7 @@ class Liar {
       : context_(own_options()),
         node_(*context_, std::move(name)),
         publisher_(std::move(
-            *ros2::RawPublisher::create(node_, topic, std::string(type), ros2::qos::kDefault))),
+            *ros2::RawPublisher::create(node_, topic, std::string(type), rtps::qos::kDefault))),
         lies_(std::move(lies)),
         talk_(20ms, [this] { publisher_->publish(lies_[next_++ % lies_.size()]); }) {}
 
@@ -57,7 +57,7 @@ Ongoing forged_diagnostics(const Target&) {
   ros2::msg::DiagnosticArray array;
   array.status = {{2, "camera_heartbeat", "broken", "camera", {}}};
   return std::make_shared<Liar>("/diagnostics", ros2::msg::DiagnosticArray::kType,
-                                Lies{ros2::encode(array)});
+                                Lies{rtps::encode(array)});
 }
 // Names, keys and values of other statuses, with what steers a terminal.
 Ongoing flood_of_statuses(const Target&) {
@@ -66,7 +66,7 @@ Ongoing flood_of_statuses(const Target&) {
     ros2::msg::DiagnosticArray array;
     const std::string name = "\x1b[2J\n" + std::to_string(i) + std::string(200, 'x');
     array.status = {{2, name, name, name, {{name, name}}}};
-    all.push_back(ros2::encode(array));
+    all.push_back(rtps::encode(array));
   }
   return std::make_shared<Liar>("/diagnostics", ros2::msg::DiagnosticArray::kType, std::move(all));
 }
@@ -75,7 +75,7 @@ Ongoing forged_transitions(const Target&) {
   for (const auto state : {LifecycleState::kInactive, LifecycleState::kFinalized}) {
     ros2::msg::TransitionEvent event;
     event.goal_state.id = static_cast<std::uint8_t>(state);
-    all.push_back(ros2::encode(event));
+    all.push_back(rtps::encode(event));
   }
   return std::make_shared<Liar>(std::string(kCamera) + "/transition_event",
                                 ros2::msg::TransitionEvent::kType, std::move(all));
@@ -85,33 +85,33 @@ Ongoing forged_parameter_events(const Target&) {
   event.node = kCamera;
   event.changed_parameters = {{"image_degradation", ros2::to_parameter_value(Value(9.0))}};
   return std::make_shared<Liar>("/parameter_events", ros2::msg::ParameterEvent::kType,
-                                Lies{ros2::encode(event)});
+                                Lies{rtps::encode(event)});
 }
 Ongoing forged_clock(const Target&) {
   Lies all;
   for (const std::int32_t second : {0, 2'000'000'000, 1, 5})
-    all.push_back(ros2::encode(ros2::msg::Time{second, 0}));
+    all.push_back(rtps::encode(ros2::msg::Time{second, 0}));
   return std::make_shared<Liar>("/clock", "rosgraph_msgs/msg/Clock", std::move(all));
 }
 // The dead camera's topic goes on.
 Ongoing forged_pictures(const Target&) {
-  return std::make_shared<Liar>(kPictures, "sensor_msgs/msg/Image", Lies{ros2::Bytes(100, 0)});
+  return std::make_shared<Liar>(kPictures, "sensor_msgs/msg/Image", Lies{rtps::Bytes(100, 0)});
 }
 Ongoing pictures_of_another_type(const Target&) {
-  return std::make_shared<Liar>(kPictures, "std_msgs/msg/String", Lies{ros2::Bytes(12, 0)});
+  return std::make_shared<Liar>(kPictures, "std_msgs/msg/String", Lies{rtps::Bytes(12, 0)});
 }
 Ongoing garbage_as_a_lease(const Target&) {
   return std::make_shared<Liar>("/_culprit_lease", "culprit/msg/Lease",
-                                Lies{ros2::Bytes(64, 0xff), ros2::Bytes(5, 0)});
+                                Lies{rtps::Bytes(64, 0xff), rtps::Bytes(5, 0)});
 }
 Ongoing garbage_as_discovery_info(const Target&) {
-  ros2::Bytes many(64, 0xff);
+  rtps::Bytes many(64, 0xff);
   many[0] = 0, many[1] = 1;
   return std::make_shared<Liar>("/ros_discovery_info", "rmw_dds_common/msg/ParticipantEntitiesInfo",
-                                Lies{many, ros2::Bytes(5, 0)});
+                                Lies{many, rtps::Bytes(5, 0)});
 }
 Ongoing a_namesake(const Target&) {
-  return std::make_shared<Liar>(kPictures, "sensor_msgs/msg/Image", Lies{ros2::Bytes(100, 0)},
+  return std::make_shared<Liar>(kPictures, "sensor_msgs/msg/Image", Lies{rtps::Bytes(100, 0)},
                                 ros2::NodeName{"/managed_subsystem", "camera"});
 }
 
@@ -123,18 +123,18 @@ class FalseAnswers {
         node_(*context_, {"/", "liar"}),
         states_(std::move(*ros2::ServiceServer::create(
             node_, {std::string(kCamera) + "/get_state", std::string(ros2::srv::GetState::kType)},
-            ros2::qos::kServices,
-            [this](ros2::ByteView) {
+            rtps::qos::kServices,
+            [this](rtps::ByteView) {
               ++asked_;
               ros2::srv::GetState::Response response;
               response.current_state.id = static_cast<std::uint8_t>(LifecycleState::kFinalized);
-              return ros2::encode(response);
+              return rtps::encode(response);
             }))),
         changes_(std::move(*ros2::ServiceServer::create(
             node_,
             {std::string(kCamera) + "/change_state", std::string(ros2::srv::ChangeState::kType)},
-            ros2::qos::kServices,
-            [](ros2::ByteView) { return ros2::encode(ros2::srv::ChangeState::Response{true}); }))) {
+            rtps::qos::kServices,
+            [](rtps::ByteView) { return rtps::encode(ros2::srv::ChangeState::Response{true}); }))) {
   }
 
   // culprit asks each server of the service.
@@ -188,7 +188,7 @@ class ComingAndGoing {
   ComingAndGoing()
       : context_(own_options()), node_(*context_, {"/", "flapping"}), flap_(20ms, [this] {
           (void)ros2::RawPublisher::create(node_, kPictures, "sensor_msgs/msg/Image",
-                                           ros2::qos::kDefault);
+                                           rtps::qos::kDefault);
         }) {}
 
  private:

@@ -26,7 +26,7 @@ constexpr std::size_t kEventsKept = 200;
 // Follows what a running culprit says, on a thread of its own, and goes on trying when it falls silent.
 class Follower {
  public:
-  Follower(web::LocalClient client, Json about) : client_(std::move(client)) {
+  Follower(http::LocalClient client, Json about) : client_(std::move(client)) {
     said_.about = std::move(about);
     thread_ = std::thread([this] { follow(); });
   }
@@ -78,7 +78,7 @@ class Follower {
       said_.events.erase(said_.events.begin(), said_.events.end() - kEventsKept);
   }
 
-  const web::LocalClient client_;
+  const http::LocalClient client_;
   std::atomic<bool> is_over_ = false;
   mutable Mutex mutex_;
   WhatCulpritSays said_ CULPRIT_GUARDED_BY(mutex_);

@@ -25,17 +25,18 @@ int edit(const WebCommandOptions& options) {
   }
   StopSignals signals;
   web::StudyRunner studies(default_state_folder() / "studies");
-  std::vector<web::Route> routes = web::rule_routes(desk);
-  for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
+  std::vector<http::Route> routes = web::rule_routes(desk);
+  for (http::Route& route : web::study_routes(studies.studies()))
+    routes.push_back(std::move(route));
   routes.push_back(web::single_run_route());
   routes.push_back(web::hindsight_route(web::usual_journal));
   live::RobotNames names;
   if (options.robot) {
-    for (web::Route& route :
+    for (http::Route& route :
          web::name_routes([&names](const LiveInterest& interest) { return names.look(interest); },
                           desk.loader()))
       routes.push_back(std::move(route));
-    for (web::Route& route : web::doctor_routes(web::examine_robot))
+    for (http::Route& route : web::doctor_routes(web::examine_robot))
       routes.push_back(std::move(route));
   }
   const auto server = serve(options.web, std::move(routes), nullptr);

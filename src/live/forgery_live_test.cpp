@@ -83,7 +83,7 @@ TEST_F(Forgery, OfAnotherProcessOfThisComputerEndsNoHealthyNode) {
   Healer healer(options, camera());
   ASSERT_TRUE(healer.sees(process.pid())) << healer.said();
   ros2::Eavesdropper eavesdropper(options);
-  const ros2::HostileProcess stranger(eavesdropper.farewells_of(process.pid()),
+  const rtps::HostileProcess stranger(eavesdropper.farewells_of(process.pid()),
                                       eavesdropper.ports_of(getpid()), 200ms);
   is_left_alone_and_healed(healer, process.pid());
   EXPECT_GT(healer.dropped(), 1000u);
@@ -102,7 +102,7 @@ TEST_F(Forgery, FromAnotherComputerEndsNoHealthyNode) {
   here.reset();
   here.emplace(**network, TestNetwork::kDesk);
   ros2::Eavesdropper eavesdropper(options);
-  const ros2::HostileProcess stranger(eavesdropper.farewells_of(process.pid()),
+  const rtps::HostileProcess stranger(eavesdropper.farewells_of(process.pid()),
                                       eavesdropper.ports_of(getpid()), 200ms);
   is_left_alone_and_healed(healer, process.pid());
   EXPECT_GT(healer.dropped(), 1000u);
@@ -111,11 +111,11 @@ TEST_F(Forgery, FromAnotherComputerEndsNoHealthyNode) {
 
 TEST_F(Forgery, ThatBeganBeforeItWasLookedForEndsNoHealthyNode) {
   const ros2::PeerProcess process(camera());
-  std::vector<ros2::Bytes> farewells = ros2::Eavesdropper(options).farewells_of(process.pid());
-  std::vector<ros2::UdpAddress> to;  // also where nobody listens yet
+  std::vector<rtps::Bytes> farewells = ros2::Eavesdropper(options).farewells_of(process.pid());
+  std::vector<rtps::UdpAddress> to;  // also where nobody listens yet
   for (std::uint32_t i = 10; i < 100; ++i)
     to.push_back({{127, 0, 0, 1}, static_cast<std::uint16_t>(7400 + 250 * options.domain + i)});
-  const ros2::HostileProcess stranger(farewells, to, 200ms);
+  const rtps::HostileProcess stranger(farewells, to, 200ms);
   Healer healer(options, camera());
   ASSERT_TRUE(healer.sees(process.pid())) << healer.said();
   is_left_alone_and_healed(healer, process.pid());

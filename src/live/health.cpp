@@ -14,10 +14,10 @@ constexpr std::uint8_t kWell = 0;
 constexpr std::uint8_t kWarn = 1;
 constexpr std::uint8_t kError = 2;
 
-ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
+link::Health of_rule(RuleId id, const Knowledge& knowledge) {
   const Rule& rule = knowledge.rules[id];
   const RuleState& state = knowledge.states[id];
-  ros2::Health health{"culprit: " + rule.name, kWell, "quiet", {}};
+  link::Health health{"culprit: " + rule.name, kWell, "quiet", {}};
   health.values.emplace_back("criticality", std::string(to_string(rule.policies.criticality)));
   if (const auto& blind = knowledge.blindness[id]) {
     health.level = kWarn;
@@ -47,11 +47,11 @@ ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
 }
 
 // Empty if the component is not REQUIRED, or its state is unknown.
-std::optional<ros2::Health> of_component(ComponentId id, const Knowledge& knowledge) {
+std::optional<link::Health> of_component(ComponentId id, const Knowledge& knowledge) {
   const Component& component = knowledge.rules[id];
   const ComponentState& state = knowledge.components[id];
   if (!component.is_required || (!state.alive && !state.is_missed)) return std::nullopt;
-  ros2::Health health{"culprit: component " + component.name, kWell, "it is there", {}};
+  link::Health health{"culprit: component " + component.name, kWell, "it is there", {}};
   if (state.alive == true) return health;
   health.level = kError;
   health.message = state.is_missed ? "it is REQUIRED and was never seen; a person must look"
@@ -60,8 +60,8 @@ std::optional<ros2::Health> of_component(ComponentId id, const Knowledge& knowle
 }
 
 // No alarm is not health.
-void take_back_what_is_not_judged(std::vector<ros2::Health>& all) {
-  for (ros2::Health& each : all) {
+void take_back_what_is_not_judged(std::vector<link::Health>& all) {
+  for (link::Health& each : all) {
     if (each.level != kWell) continue;
     each.level = kWarn;
     each.message = "not judged: culprit does not receive the robot's messages";
@@ -72,8 +72,8 @@ void take_back_what_is_not_judged(std::vector<ros2::Health>& all) {
 
 }  // namespace
 
-std::vector<ros2::Health> health(const Knowledge& knowledge, Reception reception) {
-  std::vector<ros2::Health> all{{"culprit", kWell, "all rules are quiet", {}}};
+std::vector<link::Health> health(const Knowledge& knowledge, Reception reception) {
+  std::vector<link::Health> all{{"culprit", kWell, "all rules are quiet", {}}};
   int failing = 0;
   int exhausted = 0;
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {

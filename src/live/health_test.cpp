@@ -32,7 +32,7 @@ TEST(HealthReport, IsOkWhileAllIsQuiet) {
   const Knowledge& knowledge = robot.knowledge;
   const auto all = health(knowledge);
   ASSERT_EQ(all.size(), 3u);
-  for (const ros2::Health& status : all) EXPECT_EQ(status.level, 0) << status.name;
+  for (const link::Health& status : all) EXPECT_EQ(status.level, 0) << status.name;
 }
 
 // culprit init knows by that what is none of the robot's.
@@ -43,7 +43,7 @@ TEST(HealthReport, IsKnownAsCulpritsOwn) {
   knowledge.components[ComponentId(0)].alive = true;
   const auto all = health(knowledge);
   ASSERT_EQ(all.size(), 4u);
-  for (const ros2::Health& status : all)
+  for (const link::Health& status : all)
     EXPECT_TRUE(is_culprits_status(status.name, kCulpritsHardwareId)) << status.name;
 }
 

@@ -74,7 +74,7 @@ Expected<std::unique_ptr<LiveRobot>> LiveRobot::join(const RuleSet& rules, Optio
   std::unique_ptr<LiveRobot> robot(new LiveRobot(rules));
   robot->supervisor_ =
       std::make_unique<owners::Supervisor>(rules, std::move(options.supervisor), robot->inbox_);
-  auto link = ros2::Link::open(rules, std::move(options.link), robot->inbox_);
+  auto link = link::Link::open(rules, std::move(options.link), robot->inbox_);
   if (!link) return Error{link.error()};
   robot->link_ = std::move(*link);
   robot->container_clients_ = std::make_unique<owners::ContainerClients>(

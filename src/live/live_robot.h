@@ -23,7 +23,7 @@ namespace culprit::live {
 class LiveRobot : public Robot {
  public:
   struct Options {
-    ros2::Link::Options link;
+    link::Link::Options link;
     owners::Supervisor::Options supervisor;
   };
 
@@ -65,7 +65,7 @@ class LiveRobot : public Robot {
   // Takes the priors that the fleet learned. Callable from any thread.
   void tell(PriorsTold priors);
 
-  ros2::Link& link() { return *link_; }
+  link::Link& link() { return *link_; }
   owners::Supervisor& supervisor() { return *supervisor_; }
 
  private:
@@ -88,7 +88,7 @@ class LiveRobot : public Robot {
   RunningElsewhere elsewhere_;
   owners::AllUnits units_;  // and containers of engines
   std::unique_ptr<owners::Supervisor> supervisor_;
-  std::unique_ptr<ros2::Link> link_;
+  std::unique_ptr<link::Link> link_;
   std::unique_ptr<owners::ContainerClients> container_clients_;
   std::unique_ptr<owners::ComposedNodes> composed_;
   std::map<ComponentId, std::vector<ComponentId>> ends_with_;  // as it was told

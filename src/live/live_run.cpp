@@ -18,7 +18,7 @@ constexpr Duration kDeafAtMost = std::chrono::seconds(20);
 
 // If it is unknown whether a person has paused the robot, the successor starts paused.
 std::optional<journal::StandingOrders> orders_for_successor(const RoleOfCulprit& role,
-                                                            const ros2::LeaseLink* lease) {
+                                                            const link::LeaseLink* lease) {
   if (role.role() != Role::kManage) return std::nullopt;
   auto told = role.told_orders(lease);
   if (told) return *told;
@@ -29,7 +29,7 @@ std::optional<journal::StandingOrders> orders_for_successor(const RoleOfCulprit&
 
 // Learned and tried by the predecessor.
 std::optional<Expected<journal::Inheritance>> inheritance_for_successor(
-    const RoleOfCulprit& role, const ros2::LeaseLink* lease, const RuleSet& rules, Time now) {
+    const RoleOfCulprit& role, const link::LeaseLink* lease, const RuleSet& rules, Time now) {
   if (role.role() != Role::kManage) return std::nullopt;
   return role.told_inheritance(lease, rules, now);
 }

@@ -158,7 +158,7 @@ KnownRobot LiveSession::known_robot() const { return manager_->knowledge().known
 LoadedRules LiveSession::loaded_rules() const { return {rules_, source_, ""}; }
 
 void LiveSession::say_lease() {
-  if (ros2::LeaseLink* lease = robot_->link().lease()) lease->say();
+  if (link::LeaseLink* lease = robot_->link().lease()) lease->say();
 }
 
 RunBeginning LiveSession::look_back() {
@@ -398,14 +398,14 @@ void LiveSession::make_runtime() {
 
 // Sends the successor what was learned and tried, if it is new, and not for each step of many.
 void LiveSession::bequeath() {
-  ros2::LeaseLink* lease = robot_->link().lease();
+  link::LeaseLink* lease = robot_->link().lease();
   if (!bequest_ || lease == nullptr) return;
   const Time now = robot_->now();
-  if (!is_bequest_new_ || now < later(bequeathed_, ros2::ManagerLease::kPeriod)) return;
+  if (!is_bequest_new_ || now < later(bequeathed_, link::ManagerLease::kPeriod)) return;
   is_bequest_new_ = false;
   bequeathed_ = now;
   lease->tell_state(
-      bequest_->text(learned_by(manager_->knowledge()), ros2::ManagerLease::kLongestState));
+      bequest_->text(learned_by(manager_->knowledge()), link::ManagerLease::kLongestState));
 }
 
 // A culprit that only advises learns nothing, and writes nothing.

@@ -48,7 +48,7 @@ class LiveSession {
     const Options& options;
     bool advises = false;                   // a dry run, or another culprit manages the robot
     bool records = true;                    // into the journal
-    std::optional<ros2::LeaseClaim> lease;  // to be announced; nothing: it would never manage
+    std::optional<link::LeaseClaim> lease;  // to be announced; nothing: it would never manage
     OrderKeeper& orders;
     Listener& listener;
     Observer* observer = nullptr;  // null: nobody looks on
@@ -108,7 +108,7 @@ class LiveSession {
   // For a session with the same.
   LoadedRules loaded_rules() const;
   // Null: this one would never manage.
-  const ros2::LeaseLink* lease() const { return robot_->link().lease(); }
+  const link::LeaseLink* lease() const { return robot_->link().lease(); }
   owners::Supervisor& supervisor() { return robot_->supervisor(); }
   // The last word to other culprits, of who steps back or ends.
   void say_lease();

@@ -86,12 +86,12 @@ class Look {
   }
 
  private:
-  Look(const Source& source, std::uint32_t domain, std::unique_ptr<ros2::Survey> survey)
+  Look(const Source& source, std::uint32_t domain, std::unique_ptr<link::Survey> survey)
       : source_(source), domain_(domain), survey_(std::move(survey)), checked_(check(source)) {}
 
   const Source& source_;
   std::uint32_t domain_;
-  std::unique_ptr<ros2::Survey> survey_;
+  std::unique_ptr<link::Survey> survey_;
   Checked checked_;
 };
 
@@ -149,7 +149,7 @@ void find_owner_troubles(const RuleSet& rules, const std::stop_token& stop, Live
 }
 
 // Finds requests that cannot be made to the services of the robot.
-void find_request_troubles(const RuleSet& rules, ros2::Survey& survey, const std::stop_token& stop,
+void find_request_troubles(const RuleSet& rules, link::Survey& survey, const std::stop_token& stop,
                            LiveInventory& robot) {
   for (const Strategy& strategy : rules.strategies) {
     for (const Adaptation& each : strategy.adaptations) {
@@ -159,7 +159,7 @@ void find_request_troubles(const RuleSet& rules, ros2::Survey& survey, const std
       const auto service = robot.services.find(service_of(each.subject, node));
       if (service == robot.services.end()) continue;
       auto type = survey.find_service_type(service->first);
-      const auto could = type ? ros2::ServiceCall::prepare(service->second, each.request, *type)
+      const auto could = type ? link::ServiceCall::prepare(service->second, each.request, *type)
                               : Error{type.error()};
       if (!could) robot.request_troubles.push_back({service->first, each.request, could.error()});
     }
@@ -201,7 +201,7 @@ void find_composition_troubles(const Component& component, LiveInventory& robot)
 
 }  // namespace
 
-LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& survey,
+LiveInventory look_for(const std::vector<const RuleSet*>& rules, link::Survey& survey,
                        Duration wait, const std::stop_token& stop) {
   LiveInterest interest;
   for (const RuleSet* each : rules) {

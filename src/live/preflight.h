@@ -22,7 +22,7 @@ std::string no_nodes_on(std::uint32_t domain);
 
 // Looks until all that these rules name is there, or `wait` is over, or it is to stop; asks
 // systemd about their units, and looks for what their launch commands need. Runs nothing of theirs.
-LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& survey,
+LiveInventory look_for(const std::vector<const RuleSet*>& rules, link::Survey& survey,
                        Duration wait, const std::stop_token& stop = {});
 
 struct Snapshot {

@@ -39,8 +39,8 @@ Expected<std::vector<ros2::msg::Log>> RobotNames::log_of(const std::string& node
 }
 
 // A large map takes a moment, in which others can look: the survey stays once it is there.
-Expected<ros2::MapPicture> RobotNames::map(const std::string& topic, std::uint64_t known) {
-  ros2::Survey* survey = nullptr;
+Expected<link::MapPicture> RobotNames::map(const std::string& topic, std::uint64_t known) {
+  link::Survey* survey = nullptr;
   {
     const MutexLock lock(mutex_);
     if (const auto opened = open(); !opened) return Error{opened.error()};

@@ -17,14 +17,14 @@ class RobotNames {
   // The last lines that a node has logged since this was called first, the newest last. Errors: the same.
   Expected<std::vector<ros2::msg::Log>> log_of(const std::string& node);
   // The content of a map view (Survey::map()). Errors: the same.
-  Expected<ros2::MapPicture> map(const std::string& topic, std::uint64_t known);
+  Expected<link::MapPicture> map(const std::string& topic, std::uint64_t known);
 
  private:
   Expected<void> open() CULPRIT_REQUIRES(mutex_);
 
   const std::vector<std::filesystem::path> message_path_;
   Mutex mutex_;
-  std::unique_ptr<ros2::Survey> survey_ CULPRIT_GUARDED_BY(mutex_);  // null: nobody has asked yet
+  std::unique_ptr<link::Survey> survey_ CULPRIT_GUARDED_BY(mutex_);  // null: nobody has asked yet
   LiveInterest interest_ CULPRIT_GUARDED_BY(mutex_);                 // of all who asked
 };
 

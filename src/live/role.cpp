@@ -37,7 +37,7 @@ RoleOfCulprit::RoleOfCulprit(const RuleSet& rules, std::uint32_t domain, std::st
 }
 
 Expected<std::optional<journal::StandingOrders>> RoleOfCulprit::told_orders(
-    const ros2::LeaseLink* lease) const {
+    const link::LeaseLink* lease) const {
   using Told = std::optional<journal::StandingOrders>;
   const auto text = lease != nullptr ? lease->told_orders() : std::nullopt;
   if (!text && !had_elder_) return Told();
@@ -50,7 +50,7 @@ Expected<std::optional<journal::StandingOrders>> RoleOfCulprit::told_orders(
 }
 
 std::optional<Expected<journal::Inheritance>> RoleOfCulprit::told_inheritance(
-    const ros2::LeaseLink* lease, const RuleSet& rules, Time now) const {
+    const link::LeaseLink* lease, const RuleSet& rules, Time now) const {
   const auto told = lease != nullptr ? lease->told_state() : std::nullopt;
   if (told) return journal::inheritance_from_text(told->text, rules, told->shift, now);
   if (!had_elder_) return std::nullopt;
@@ -61,7 +61,7 @@ std::string RoleOfCulprit::name_of_claim(const std::string& what) const {
   return "manages-" + std::to_string(domain_) + "-" + what;
 }
 
-bool RoleOfCulprit::has_changed(const ros2::LeaseLink* lease, Time now, Time joined) {
+bool RoleOfCulprit::has_changed(const link::LeaseLink* lease, Time now, Time joined) {
   const auto elder = lease != nullptr ? lease->elder() : std::nullopt;
   const bool is_ours = claim_.look();
   const Role role = elder || !is_ours ? Role::kAdvise : Role::kManage;
@@ -82,7 +82,7 @@ bool RoleOfCulprit::has_changed(const ros2::LeaseLink* lease, Time now, Time joi
 }
 
 std::map<std::string, std::string> RoleOfCulprit::managed_elsewhere(
-    const std::set<std::string>& nodes, const ros2::LeaseLink* lease) {
+    const std::set<std::string>& nodes, const link::LeaseLink* lease) {
   std::erase_if(node_claims_, [&](const auto& each) { return !nodes.contains(each.first); });
   std::map<std::string, std::string> elsewhere;
   for (const std::string& node : nodes) {
@@ -96,7 +96,7 @@ std::map<std::string, std::string> RoleOfCulprit::managed_elsewhere(
   return elsewhere;
 }
 
-std::vector<std::string> RoleOfCulprit::warnings(const ros2::LeaseLink* lease) {
+std::vector<std::string> RoleOfCulprit::warnings(const link::LeaseLink* lease) {
   std::vector<std::string> lines;
   const auto warn = [&](const std::string& line) {
     constexpr std::size_t kMost = 100;  // strangers choose what they are called

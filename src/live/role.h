@@ -33,11 +33,11 @@ class RoleOfCulprit {
 
   Role role() const { return role_; }
   // To be announced over DDS: the same until the role is another one.
-  const ros2::LeaseClaim& lease() const { return lease_; }
+  const link::LeaseClaim& lease() const { return lease_; }
 
   // Looks anew. Gives whether the role is another one now, which takes a new beginning. `joined`:
   // when it joined the domain; an elder manager may take a while to be discovered.
-  bool has_changed(const ros2::LeaseLink* lease, Time now, Time joined);
+  bool has_changed(const link::LeaseLink* lease, Time now, Time joined);
   // For the user: why it has this role. Empty: it manages from the start.
   const std::string& reason() const { return reason_; }
 
@@ -47,27 +47,27 @@ class RoleOfCulprit {
 
   // Orders as reported by the latest other culprit that managed the robot; empty: there was none.
   // Error: there was one, and its orders are unknown.
-  Expected<std::optional<journal::StandingOrders>> told_orders(const ros2::LeaseLink* lease) const;
+  Expected<std::optional<journal::StandingOrders>> told_orders(const link::LeaseLink* lease) const;
 
   // Learned and tried by that culprit, as of `now`; empty: there was none. Error: the reason
   // why it is unknown.
-  std::optional<Expected<journal::Inheritance>> told_inheritance(const ros2::LeaseLink* lease,
+  std::optional<Expected<journal::Inheritance>> told_inheritance(const link::LeaseLink* lease,
                                                                  const RuleSet& rules,
                                                                  Time now) const;
 
   // Which of these nodes another culprit manages, and who that is. Looks anew; nodes that are no
   // longer among them are given up.
   std::map<std::string, std::string> managed_elsewhere(const std::set<std::string>& nodes,
-                                                       const ros2::LeaseLink* lease);
+                                                       const link::LeaseLink* lease);
 
   // Warnings about foreign claims, each once.
-  std::vector<std::string> warnings(const ros2::LeaseLink* lease);
+  std::vector<std::string> warnings(const link::LeaseLink* lease);
 
  private:
   std::string name_of_claim(const std::string& what) const;
 
   std::uint32_t domain_;
-  ros2::LeaseClaim lease_;
+  link::LeaseClaim lease_;
   HostClaim claim_;
   std::map<std::string, HostClaim> node_claims_;
   Role role_ = Role::kManage;

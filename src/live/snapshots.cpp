@@ -63,13 +63,13 @@ void Snapshots::ask(const std::string& why) {
     if (result.outcome == ros2::CallOutcome::kUnreachable)
       return say("no snapshot (" + why + "): no node offers " + service);
     const auto answer = result.outcome == ros2::CallOutcome::kAnswered
-                            ? ros2::decode<ros2::srv::Snapshot::Response>(result.reply)
+                            ? rtps::decode<ros2::srv::Snapshot::Response>(result.reply)
                             : std::nullopt;
     if (!answer) return say("no snapshot (" + why + "), perhaps: " + service + " does not answer");
     say(answer->success ? service + " wrote a snapshot (" + why + ")"
                         : "no snapshot (" + why + "): " + service + " refused it");
   };
-  client_->call(ros2::encode(ros2::srv::Snapshot::Request{}), ros2::Repeat::kNever, kPatience,
+  client_->call(rtps::encode(ros2::srv::Snapshot::Request{}), ros2::Repeat::kNever, kPatience,
                 on_answer);
 }
 

@@ -58,7 +58,7 @@ struct HotRobot {
   std::optional<Manager> manager{std::in_place, rules, std::make_unique<BayesPlanner>(),
                                  Manager::Options()};
   Time now{1h};  // of a computer that was started before
-  ros2::EventLog<std::string> said;
+  rtps::EventLog<std::string> said;
   Snapshots snapshots{{.recorder = "/rosbag2_recorder",
                        .say = [this](const std::string& text) { said.add(text); }}};
 };
@@ -69,11 +69,11 @@ struct RecorderOfAnotherOne {
       : context(domain.options()),
         server(std::move(*ros2::ServiceServer::create(
             node, {"/rosbag2_recorder/snapshot", std::string(ros2::srv::Snapshot::kType)},
-            ros2::qos::kServices, [this, writes](ros2::ByteView) {
+            rtps::qos::kServices, [this, writes](rtps::ByteView) {
               asked.add(0);
-              return ros2::encode(ros2::srv::Snapshot::Response{writes});
+              return rtps::encode(ros2::srv::Snapshot::Response{writes});
             }))) {}
-  ros2::EventLog<int> asked;
+  rtps::EventLog<int> asked;
   ros2::LiveContext context;
   ros2::NodeEntry node{*context, {"/", "rosbag2_recorder"}};
   std::unique_ptr<ros2::ServiceServer> server;

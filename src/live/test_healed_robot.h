@@ -60,7 +60,7 @@ class HealedRobot {
 
   template <class Done>
   static bool comes_true(Done done) {
-    for (const Time end = later(live_now(), ros2::kPatience); !done();) {
+    for (const Time end = later(live_now(), rtps::kPatience); !done();) {
       if (live_now() > end) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }

@@ -84,7 +84,7 @@ class Encoder {
     if (definition.fields.empty()) writer_.write(std::uint8_t{0});
     return {};
   }
-  ros2::Bytes take() { return writer_.take(); }
+  rtps::Bytes take() { return writer_.take(); }
 
  private:
   Expected<void> field(const Json& document, const FieldDefinition& field) {
@@ -136,12 +136,12 @@ class Encoder {
   }
 
   const MessageDefinitions& definitions_;
-  ros2::CdrWriter writer_;
+  rtps::CdrWriter writer_;
 };
 
 class Decoder {
  public:
-  Decoder(ros2::ByteView payload, const MessageDefinitions& definitions)
+  Decoder(rtps::ByteView payload, const MessageDefinitions& definitions)
       : definitions_(definitions), reader_(payload) {}
 
   Json message(const std::string& type) {
@@ -179,20 +179,20 @@ class Decoder {
   }
 
   const MessageDefinitions& definitions_;
-  ros2::CdrReader reader_;
+  rtps::CdrReader reader_;
   bool is_text_mended_ = false;
 };
 
 }  // namespace
 
-Expected<ros2::Bytes> encode(const Json& document, const MessageType& type) {
+Expected<rtps::Bytes> encode(const Json& document, const MessageType& type) {
   Encoder encoder(type.definitions);
   if (const auto written = encoder.message(document, type.name); !written)
     return Error{type.name + ": " + written.error()};
   return encoder.take();
 }
 
-Expected<Json> decode(ros2::ByteView payload, const MessageType& type) {
+Expected<Json> decode(rtps::ByteView payload, const MessageType& type) {
   Decoder decoder(payload, type.definitions);
   Json document = decoder.message(type.name);
   if (!decoder.ok()) return Error{"what came is no " + type.name};

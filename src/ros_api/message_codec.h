@@ -15,9 +15,9 @@ namespace culprit::ros_api {
 // A field that the document has not is zero, false or empty. Texts that are no UTF-8 are mended; a
 // floating-point number that is null is not a number. Errors: a member that is no field of the type, or
 // does not fit it.
-Expected<ros2::Bytes> encode(const Json& document, const MessageType& type);
+Expected<rtps::Bytes> encode(const Json& document, const MessageType& type);
 
 // Errors: the payload is no message of that type, or a text in it is no UTF-8.
-Expected<Json> decode(ros2::ByteView payload, const MessageType& type);
+Expected<Json> decode(rtps::ByteView payload, const MessageType& type);
 
 }  // namespace culprit::ros_api

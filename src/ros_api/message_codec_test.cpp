@@ -60,7 +60,7 @@ TEST(MessageCodec, WritesWhatRos2Reads) {
   const MessageType type = test_type("bool success\nstring message\n");
   const auto ours = encode({{"success", true}, {"message", "paused"}}, type);
   ASSERT_TRUE(ours) << ours.error();
-  EXPECT_EQ(*ours, ros2::encode(ros2::srv::Trigger::Response{true, "paused"}));
+  EXPECT_EQ(*ours, rtps::encode(ros2::srv::Trigger::Response{true, "paused"}));
 }
 
 TEST(MessageCodec, AFieldThatIsNotSaidIsZero) {
@@ -96,7 +96,7 @@ TEST(MessageCodec, ATextThatIsNoUtf8IsMendedOnTheWayOutAndRefusedOnTheWayIn) {
   const MessageType type = test_type("string text\n");
   const std::string bad = "a\xff\xfe z";
   EXPECT_EQ(there_and_back({{"text", bad}}, type)["text"], "a\ufffd\ufffd z");
-  ros2::CdrWriter writer;
+  rtps::CdrWriter writer;
   writer.write_string(bad);
   const auto refused = decode(writer.take(), type);
   ASSERT_FALSE(refused);
@@ -108,12 +108,12 @@ TEST(MessageCodec, WhatIsNoMessageIsRefused) {
   EXPECT_FALSE(decode({}, type));
   const auto whole = *encode({{"text", "abc"}}, type);
   for (std::size_t size = 0; size < whole.size(); ++size)
-    EXPECT_FALSE(decode(ros2::ByteView(whole).first(size), type)) << size;
+    EXPECT_FALSE(decode(rtps::ByteView(whole).first(size), type)) << size;
   EXPECT_TRUE(decode(whole, type));
 }
 
 // For any bytes: an order is read or refused, with no more memory than it has bytes.
-RC_GTEST_PROP(MessageCodec, AnyBytesAreReadOrRefused, (ros2::Bytes bytes)) {
+RC_GTEST_PROP(MessageCodec, AnyBytesAreReadOrRefused, (rtps::Bytes bytes)) {
   static const CulpritTypes types;
   bytes.insert(bytes.begin(), {0, 1, 0, 0});
   for (const char* name : {"culprit_msgs/msg/Status", "culprit_msgs/srv/Silence_Request"}) {

@@ -15,7 +15,7 @@ constexpr std::array kServices = {OrderService{"pause", "culprit_msgs/srv/Pause"
                                   OrderService{"run_strategy", "culprit_msgs/srv/RunStrategy"}};
 
 std::string text_at(const Json& request, const char* name) {
-  return web::text_of(request, name).value_or("");
+  return http::text_of(request, name).value_or("");
 }
 
 bool is_set(const Json& request, const char* name) {
@@ -84,8 +84,8 @@ std::vector<std::string> OrderServices::open(ros2::NodeEntry& node) {
     const ServiceType& type = types_.service(kServices[s].type);
     const auto name = ros2::resolve_name("~/" + std::string(kServices[s].name), node.name());
     auto server = ros2::ServiceServer::create_slow(
-        node, {*name, type.name}, ros2::qos::kServices,
-        [this, &type, &worker = *workers_[s]](ros2::ByteView request,
+        node, {*name, type.name}, rtps::qos::kServices,
+        [this, &type, &worker = *workers_[s]](rtps::ByteView request,
                                               const ros2::ServiceServer::Answer& answer) {
           take(type, worker, request, answer);
         },
@@ -101,7 +101,7 @@ std::vector<std::string> OrderServices::open(ros2::NodeEntry& node) {
 
 // Every request gets an answer, whatever its bytes, so that no client waits in vain.
 void OrderServices::take(const ServiceType& type, ros2::WorkerThread& worker,
-                         ros2::ByteView request, const ros2::ServiceServer::Answer& answer) {
+                         rtps::ByteView request, const ros2::ServiceServer::Answer& answer) {
   const auto say = [&type, answer](const Json& said) {
     auto reply = encode(said, type.response);
     if (reply) answer(std::move(*reply));
@@ -119,14 +119,14 @@ Json OrderServices::obey(const ServiceType& type, const Json& request) const {
   (*order)["wait_s"] = seconds(kPatience);
   // It is not carried out once its sender received a timeout.
   (*order)["valid_until"] = seconds(live_now().time_since_epoch() + kPatience);
-  const web::Answer answer = give_(*order);
+  const http::Answer answer = give_(*order);
   if (answer.status >= 400)
-    return response(false, web::text_of(answer.body, "error").value_or("it is refused"));
+    return response(false, http::text_of(answer.body, "error").value_or("it is refused"));
   if (answer.status != 200)
     return response(false, "culprit has the order, and its manager did not take it within " +
                                to_string(kPatience) + "; ~/status shows what holds");
-  const std::string word = web::text_of(answer.body, "order").value_or("");
-  const std::string kept = web::text_of(answer.body, "text").value_or("");
+  const std::string word = http::text_of(answer.body, "order").value_or("");
+  const std::string kept = http::text_of(answer.body, "text").value_or("");
   return response(true, kept.empty() ? word : word + "; " + kept);
 }
 

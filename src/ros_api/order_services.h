@@ -34,7 +34,7 @@ class OrderServices {
   static constexpr Duration kPatience = std::chrono::seconds(3);  // with the manager
 
   // Called on threads of this, and may block as long as an order does.
-  using Give = std::function<web::Answer(const Json& order)>;
+  using Give = std::function<http::Answer(const Json& order)>;
 
   // `types` outlive it.
   OrderServices(const CulpritTypes& types, Give give);
@@ -46,7 +46,7 @@ class OrderServices {
   void close() { servers_.clear(); }
 
  private:
-  void take(const ServiceType& type, ros2::WorkerThread& worker, ros2::ByteView request,
+  void take(const ServiceType& type, ros2::WorkerThread& worker, rtps::ByteView request,
             const ros2::ServiceServer::Answer& answer);
   Json obey(const ServiceType& type, const Json& request) const;
 

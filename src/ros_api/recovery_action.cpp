@@ -35,11 +35,11 @@ constexpr int kErrorGoalTerminated = 3;
 
 // rcl_action's: services as such, the topics reliable, and a late joiner gets the newest state of
 // all goals.
-constexpr ros2::Qos kFeedbackQos{.depth = 10};
+constexpr rtps::Qos kFeedbackQos{.depth = 10};
 // A client of rclcpp takes feedback before answers, and drops what is about a goal that it does not
 // know yet: so a goal's first feedback comes so long after the answer that accepts it.
 constexpr Duration kUntilKnown = std::chrono::milliseconds(100);
-constexpr ros2::Qos kStatusQos{.durability = ros2::Durability::kTransientLocal, .depth = 1};
+constexpr rtps::Qos kStatusQos{.durability = rtps::Durability::kTransientLocal, .depth = 1};
 
 Id id_in(const Json& uuid) {
   Id id{};
@@ -108,8 +108,8 @@ class RecoveryAction::Offer {
     const ServiceType& type = types_.service(type_name);
     const auto name = ros2::resolve_name(name_of(part), node_.name());
     auto server = ros2::ServiceServer::create_slow(
-        node_, {*name, type.name}, ros2::qos::kServices,
-        [&type, take = std::move(take)](ros2::ByteView request, const Answer& answer) {
+        node_, {*name, type.name}, rtps::qos::kServices,
+        [&type, take = std::move(take)](rtps::ByteView request, const Answer& answer) {
           if (const auto read = decode(request, type.request)) take(*read, answer);
         },
         {type.request.hash, type.response.hash, type.hash});
@@ -121,7 +121,7 @@ class RecoveryAction::Offer {
   }
 
   std::unique_ptr<ros2::RawPublisher> publish(const std::string& part, const char* type_name,
-                                              const ros2::Qos& qos) {
+                                              const rtps::Qos& qos) {
     const MessageType& type = types_.message(type_name);
     auto publisher = ros2::RawPublisher::create(node_, name_of(part), type.name, qos, type.hash);
     if (publisher) return std::move(*publisher);

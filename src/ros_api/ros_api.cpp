@@ -5,8 +5,8 @@
 namespace culprit::ros_api {
 namespace {
 
-constexpr ros2::Qos kLatched{.durability = ros2::Durability::kTransientLocal, .depth = 1};
-constexpr ros2::Qos kHistory{.depth = 100};
+constexpr rtps::Qos kLatched{.durability = rtps::Durability::kTransientLocal, .depth = 1};
+constexpr rtps::Qos kHistory{.depth = 100};
 
 constexpr std::size_t place_of(Topic topic) { return static_cast<std::size_t>(topic); }
 
@@ -49,7 +49,7 @@ void RosApi::leaves() {
 }
 
 Expected<void> RosApi::offer(ros2::NodeEntry& node, Topic topic, std::string_view name,
-                             const ros2::Qos& qos) {
+                             const rtps::Qos& qos) {
   Told& told = told_[place_of(topic)];
   auto publisher = ros2::RawPublisher::create(node, name, told.type->name, qos, told.type->hash);
   if (!publisher)
@@ -62,10 +62,10 @@ Expected<void> RosApi::describe_types(ros2::NodeEntry& node) {
   using Describe = ros2::srv::GetTypeDescription;
   const auto name = ros2::resolve_name("~/get_type_description", node.name());
   auto server = ros2::ServiceServer::create(
-      node, {*name, std::string(Describe::kType)}, ros2::qos::kServices,
-      [this](ros2::ByteView request) {
-        const auto asked = ros2::decode<Describe::Request>(request);
-        return asked ? ros2::encode(types_.described(*asked)) : ros2::Bytes();
+      node, {*name, std::string(Describe::kType)}, rtps::qos::kServices,
+      [this](rtps::ByteView request) {
+        const auto asked = rtps::decode<Describe::Request>(request);
+        return asked ? rtps::encode(types_.described(*asked)) : rtps::Bytes();
       });
   if (!server) return Error{"types are not described by " + *name + ": " + server.error()};
   descriptions_ = std::move(*server);

@@ -50,7 +50,7 @@ class RosApi : public live::Observer {
   };
 
   Expected<void> offer(ros2::NodeEntry& node, Topic topic, std::string_view name,
-                       const ros2::Qos& qos);
+                       const rtps::Qos& qos);
   Expected<void> describe_types(ros2::NodeEntry& node);
   void tell(Topic topic, const Json& message);
 

@@ -18,7 +18,7 @@
 namespace culprit::ros_api {
 namespace {
 
-using ros2::Durability;
+using rtps::Durability;
 
 using testing::HasSubstr;
 
@@ -81,7 +81,7 @@ struct OrderedCulprit {
   const RuleSet rules = *check(Source("test", kOrderedRules)).rules;
   Time now{};
   std::optional<Manager> manager;
-  web::Hub hub;
+  http::Hub hub;
   web::Metrics metrics;
   web::HubObserver observer{hub, metrics};
   live::OrderKeeper keeper{"this is a test"};
@@ -116,7 +116,7 @@ TEST(RosApi, IsOfferedAsNodesOfRos2AskForIt) {
       const ros2::GraphEndpoint& each = joined->endpoint;
       return each.kind == kind && each.name == name && each.type == type &&
              each.type_hash == hash && each.qos.durability == durability &&
-             each.qos.reliability == ros2::Reliability::kReliable &&
+             each.qos.reliability == rtps::Reliability::kReliable &&
              (!is_service || each.service_hash == culprit.panel.types.service(type).hash);
     });
   };
@@ -271,12 +271,12 @@ TEST(RosApi, AMistypedNameHasASuggestionAndNothingHappens) {
 
 TEST(RosApi, AForgedRequestIsAnsweredWithAnErrorAndDoesNothing) {
   OrderedCulprit culprit(Orders::kTaken);
-  ros2::CdrWriter no_text;
+  rtps::CdrWriter no_text;
   no_text.write_string("ann\xff");
   no_text.write_string("");
-  ros2::CdrWriter too_long;  // its length field is too large
+  rtps::CdrWriter too_long;  // its length field is too large
   too_long.write(std::uint32_t{0xFFFFFFFF});
-  for (const ros2::Bytes& request : {ros2::Bytes{0, 1, 0, 0}, ros2::Bytes{0, 9, 0, 0, 1, 2, 3, 4},
+  for (const rtps::Bytes& request : {rtps::Bytes{0, 1, 0, 0}, rtps::Bytes{0, 9, 0, 0, 1, 2, 3, 4},
                                      no_text.take(), too_long.take()}) {
     const Json answer = culprit.panel.call_with("/culprit/pause", kPause, request);
     ASSERT_TRUE(answer.is_object()) << answer;
@@ -291,12 +291,12 @@ TEST(RosApi, AForgedRequestIsAnsweredWithAnErrorAndDoesNothing) {
 TEST(RosApi, APauseDoesNotWaitBehindAnotherOrder) {
   std::promise<void> disk;
   const auto disk_answers = disk.get_future().share();
-  ros2::EventLog<std::string> given;
+  rtps::EventLog<std::string> given;
   {
     OrderedCulprit culprit([&](const Json& order) {
       given.add(order["order"]);
       if (order["order"] != "pause") disk_answers.wait();
-      return web::Answer{200, {{"order", "done"}}};
+      return http::Answer{200, {{"order", "done"}}};
     });
     std::thread slow([&] {
       TestRosNode other(culprit.domain.options());
@@ -313,13 +313,13 @@ TEST(RosApi, APauseDoesNotWaitBehindAnotherOrder) {
 TEST(RosApi, MoreOrdersThanItCanKeepAreRefusedAtOnce) {
   std::promise<void> disk;
   const auto disk_answers = disk.get_future().share();
-  ros2::EventLog<std::string> given;
+  rtps::EventLog<std::string> given;
   OrderedCulprit culprit([&](const Json&) {
     given.add("");
     disk_answers.wait();
-    return web::Answer{200, {{"order", "done"}}};
+    return http::Answer{200, {{"order", "done"}}};
   });
-  ros2::EventLog<std::string> answers;
+  rtps::EventLog<std::string> answers;
   TestRosNode many(culprit.domain.options());
   std::vector<std::unique_ptr<ros2::ServiceClient>> clients;
   const auto& type = many.types.service(kPause);
@@ -327,7 +327,7 @@ TEST(RosApi, MoreOrdersThanItCanKeepAreRefusedAtOnce) {
   for (std::size_t i = 0; i < count; ++i) {
     clients.push_back(many.client_of("/culprit/pause", kPause));
     clients.back()->call(*encode({{"author", "ann"}}, type.request), ros2::Repeat::kNever,
-                         ros2::kPatience, [&](const ros2::CallResult& result) {
+                         rtps::kPatience, [&](const ros2::CallResult& result) {
                            const auto answer = decode(result.reply, type.response);
                            answers.add(answer ? (*answer)["message"].get<std::string>() : "none");
                          });

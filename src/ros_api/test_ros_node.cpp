@@ -2,12 +2,12 @@
 
 namespace culprit::ros_api {
 
-ros2::EventLog<Json>& TestRosNode::hear(const std::string& topic, const std::string& type,
-                                        ros2::Durability durability) {
-  auto& log = *logs_.emplace_back(std::make_unique<ros2::EventLog<Json>>());
+rtps::EventLog<Json>& TestRosNode::hear(const std::string& topic, const std::string& type,
+                                        rtps::Durability durability) {
+  auto& log = *logs_.emplace_back(std::make_unique<rtps::EventLog<Json>>());
   auto subscription =
       ros2::Subscription::create(node_, topic, type, {.durability = durability, .depth = 100},
-                                 [this, &log, type](ros2::ByteView payload) {
+                                 [this, &log, type](rtps::ByteView payload) {
                                    const auto message = decode(payload, types.message(type));
                                    if (message) {
                                      log.add(*message);
@@ -26,9 +26,9 @@ bool TestRosNode::is_known_to(const std::string& node) {
   const auto client = ros2::ServiceClient::create(
       node_, {node + "/get_type_description", std::string(ros2::srv::GetTypeDescription::kType)});
   if (!client) throw std::runtime_error(client.error());
-  ros2::EventLog<bool> answers;
-  (*client)->call(ros2::encode(ros2::srv::GetTypeDescription::Request{}),
-                  ros2::Repeat::kUntilAnswered, ros2::kPatience,
+  rtps::EventLog<bool> answers;
+  (*client)->call(rtps::encode(ros2::srv::GetTypeDescription::Request{}),
+                  ros2::Repeat::kUntilAnswered, rtps::kPatience,
                   [&](const ros2::CallResult& result) {
                     answers.add(result.outcome == ros2::CallOutcome::kAnswered);
                   });
@@ -43,9 +43,9 @@ Json TestRosNode::call(const std::string& service, const std::string& type, cons
 }
 
 Json TestRosNode::call_with(const std::string& service, const std::string& type,
-                            const ros2::Bytes& request, Duration patience) {
+                            const rtps::Bytes& request, Duration patience) {
   const auto client = client_of(service, type);
-  ros2::EventLog<ros2::Bytes> answers;
+  rtps::EventLog<rtps::Bytes> answers;
   client->call(request, ros2::Repeat::kNever, patience, [&](const ros2::CallResult& result) {
     answers.add({result.reply.begin(), result.reply.end()});
   });
@@ -58,9 +58,9 @@ std::unique_ptr<ros2::ServiceClient> TestRosNode::client_of(const std::string& s
                                                             const std::string& type) {
   const std::string node = service.substr(0, service.find('/', 1));
   auto client = ros2::ServiceClient::create(
-      node_, {service, type}, ros2::qos::kServices,
+      node_, {service, type}, rtps::qos::kServices,
       {{node + "/get_type_description", std::string(ros2::srv::GetTypeDescription::kType)},
-       ros2::encode(ros2::srv::GetTypeDescription::Request{})});
+       rtps::encode(ros2::srv::GetTypeDescription::Request{})});
   if (!client) throw std::runtime_error(client.error());
   return std::move(*client);
 }

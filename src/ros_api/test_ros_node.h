@@ -19,18 +19,18 @@ class TestRosNode {
       : context(options), node_(*context, {"/", "panel"}) {}
 
   // Every message of the topic from now on, and with `latched` the newest before.
-  ros2::EventLog<Json>& hear(const std::string& topic, const std::string& type,
-                             ros2::Durability durability = ros2::Durability::kVolatile);
+  rtps::EventLog<Json>& hear(const std::string& topic, const std::string& type,
+                             rtps::Durability durability = rtps::Durability::kVolatile);
 
   // Waits until that node knows all readers of this one. False: it does not answer.
   bool is_known_to(const std::string& node);
 
   // The answer of a service; null: there was none in time.
   Json call(const std::string& service, const std::string& type, const Json& request,
-            Duration patience = ros2::kPatience);
+            Duration patience = rtps::kPatience);
   // The same, of any bytes.
-  Json call_with(const std::string& service, const std::string& type, const ros2::Bytes& request,
-                 Duration patience = ros2::kPatience);
+  Json call_with(const std::string& service, const std::string& type, const rtps::Bytes& request,
+                 Duration patience = rtps::kPatience);
 
   // A client of a service of culprit's node, which has no namespace. It sends a request once, when
   // the server has proven that it knows the client: so no order is given twice.
@@ -42,7 +42,7 @@ class TestRosNode {
 
  private:
   ros2::NodeEntry node_;
-  std::vector<std::unique_ptr<ros2::EventLog<Json>>> logs_;
+  std::vector<std::unique_ptr<rtps::EventLog<Json>>> logs_;
   std::vector<std::unique_ptr<ros2::Subscription>> subscriptions_;
 };
 

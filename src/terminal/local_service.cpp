@@ -13,8 +13,8 @@
 namespace culprit {
 
 Expected<std::unique_ptr<LocalService>> LocalService::begin(CulpritIdentity identity,
-                                                            std::vector<web::Route> routes,
-                                                            web::Hub& hub) {
+                                                            std::vector<http::Route> routes,
+                                                            http::Hub& hub) {
   live::remove_left_sockets();
   std::unique_ptr<LocalService> service(
       new LocalService(std::move(identity), std::move(routes), hub));
@@ -31,14 +31,14 @@ Expected<std::unique_ptr<LocalService>> LocalService::begin(CulpritIdentity iden
 Expected<void> LocalService::listen() {
   const auto socket = live::own_socket(identity_.domain);
   if (!socket) return Error{socket.error()};
-  web::HttpServer::Options options;
+  http::HttpServer::Options options;
   options.socket = socket_ = socket->string();
   options.openapi = web::openapi();
   options.about = {{"version", identity_.version}, {"robot", identity_.robot},
                    {"rules", identity_.rules},     {"domain", identity_.domain},
                    {"node", identity_.node},       {"process", getpid()},
                    {"page", identity_.page}};
-  auto server = web::HttpServer::start(std::move(options), routes_, &hub_);
+  auto server = http::HttpServer::start(std::move(options), routes_, &hub_);
   if (!server) return Error{server.error()};
   server_ = std::move(*server);
   return {};
@@ -58,7 +58,7 @@ void LocalService::keep_listening(const std::stop_token& stop) {
 }
 
 std::unique_ptr<LocalService> serve_this_machine(const CulpritIdentity& identity,
-                                                 std::vector<web::Route> routes, web::Hub& hub,
+                                                 std::vector<http::Route> routes, http::Hub& hub,
                                                  std::FILE* out) {
   auto service = LocalService::begin(identity, std::move(routes), hub);
   if (!service) {

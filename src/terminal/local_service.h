@@ -35,29 +35,29 @@ class LocalService {
 
   // Errors: it cannot listen. `hub` outlives it.
   static Expected<std::unique_ptr<LocalService>> begin(CulpritIdentity identity,
-                                                       std::vector<web::Route> routes,
-                                                       web::Hub& hub);
+                                                       std::vector<http::Route> routes,
+                                                       http::Hub& hub);
 
  private:
-  LocalService(CulpritIdentity identity, std::vector<web::Route> routes, web::Hub& hub)
+  LocalService(CulpritIdentity identity, std::vector<http::Route> routes, http::Hub& hub)
       : identity_(std::move(identity)), routes_(std::move(routes)), hub_(hub) {}
 
   Expected<void> listen();
   void keep_listening(const std::stop_token& stop);
 
   const CulpritIdentity identity_;
-  const std::vector<web::Route> routes_;
-  web::Hub& hub_;
+  const std::vector<http::Route> routes_;
+  http::Hub& hub_;
   std::string socket_;
-  std::unique_ptr<web::HttpServer>
-      server_;            // of the thread, once it runs; null: it cannot listen now
+  // The thread has it, once it runs; null: it cannot listen now.
+  std::unique_ptr<http::HttpServer> server_;
   std::jthread looking_;  // ends first
 };
 
 // Serves until that is destroyed, and says on `out` how to ask. Null, and said, if it is
 // impossible: a robot is managed all the same.
 std::unique_ptr<LocalService> serve_this_machine(const CulpritIdentity& identity,
-                                                 std::vector<web::Route> routes, web::Hub& hub,
+                                                 std::vector<http::Route> routes, http::Hub& hub,
                                                  std::FILE* out = stdout);
 
 }  // namespace culprit

@@ -70,15 +70,15 @@ void WebOptions::add_to(CLI::App& command) {
 
 namespace {
 
-Expected<web::Access> access_for(const WebOptions& options) {
-  web::Access access;
-  access.is_local = web::is_loopback(options.address);
+Expected<http::Access> access_for(const WebOptions& options) {
+  http::Access access;
+  access.is_local = http::is_loopback(options.address);
   access.allowed_hosts = options.allowed_hosts;
   access.is_encrypted = !options.certificate.empty();
   for (const auto& [file, token] : {std::pair(&options.operate_token_file, &access.operate_token),
                                     std::pair(&options.look_token_file, &access.look_token)}) {
     if (file->empty()) continue;
-    auto read = web::read_secret(*file);
+    auto read = http::read_secret(*file);
     if (!read) return Error{read.error()};
     *token = std::move(*read);
   }
@@ -88,10 +88,10 @@ Expected<web::Access> access_for(const WebOptions& options) {
           "other machines can reach {}: write a token to a file that only you can read, "
           "and add --token-file FILE",
           options.address)};
-    access.token = web::make_token();
+    access.token = http::make_token();
     return access;
   }
-  auto token = web::read_secret(options.token_file);
+  auto token = http::read_secret(options.token_file);
   if (!token) return Error{token.error()};
   access.token = std::move(*token);
   const bool are_alike = access.token == access.operate_token ||
@@ -103,24 +103,24 @@ Expected<web::Access> access_for(const WebOptions& options) {
 
 }  // namespace
 
-Expected<std::unique_ptr<web::HttpServer>> serve(const WebOptions& options,
-                                                 std::vector<web::Route> routes, web::Hub* hub,
-                                                 std::FILE* out) {
+Expected<std::unique_ptr<http::HttpServer>> serve(const WebOptions& options,
+                                                  std::vector<http::Route> routes, http::Hub* hub,
+                                                  std::FILE* out) {
   auto access = access_for(options);
   if (!access) return Error{access.error()};
-  web::HttpServer::Options server{options.address, options.port.value_or(WebOptions::kUsualPort),
-                                  std::move(*access)};
+  http::HttpServer::Options server{options.address, options.port.value_or(WebOptions::kUsualPort),
+                                   std::move(*access)};
   if (!options.certificate.empty()) {
-    auto tls = web::TlsContext::load(options.certificate, options.key);
+    auto tls = http::TlsContext::load(options.certificate, options.key);
     if (!tls) return Error{tls.error()};
     server.tls = std::move(*tls);
   }
   server.app = web::app();
   server.openapi = web::openapi();
-  auto started = web::HttpServer::start(server, routes, hub);
+  auto started = http::HttpServer::start(server, routes, hub);
   if (!started && !options.port) {
     server.port = 0;
-    started = web::HttpServer::start(server, std::move(routes), hub);
+    started = http::HttpServer::start(server, std::move(routes), hub);
   }
   if (!started) return started;
   if (server.access.is_local) {

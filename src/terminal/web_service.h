@@ -30,8 +30,8 @@ struct WebOptions {
 
 // Serves until the server is destroyed, and says on `out` where. `hub` may be null.
 // Errors: the address is not local and there is no token file; a file cannot be used; or it cannot be listened at.
-Expected<std::unique_ptr<web::HttpServer>> serve(const WebOptions& options,
-                                                 std::vector<web::Route> routes, web::Hub* hub,
-                                                 std::FILE* out = stdout);
+Expected<std::unique_ptr<http::HttpServer>> serve(const WebOptions& options,
+                                                  std::vector<http::Route> routes, http::Hub* hub,
+                                                  std::FILE* out = stdout);
 
 }  // namespace culprit

@@ -9,7 +9,7 @@
 namespace culprit::web {
 
 // Empty if the program was built where npm is not installed.
-std::span<const Asset> app();
+std::span<const http::Asset> app();
 
 // The document that describes the API (OpenAPI 3.1, openapi.json).
 std::string_view openapi();

@@ -33,11 +33,11 @@ Expected<Printed> run_aside(std::vector<std::string> arguments, const TemporaryF
   return Printed{WEXITSTATUS(status), std::move(*text)};
 }
 
-Answer FewAtOnce::make(const std::function<Answer()>& answer) {
-  auto& places = client_has_token() ? with_token_ : without_token_;
+http::Answer FewAtOnce::make(const std::function<http::Answer()>& answer) {
+  auto& places = http::client_has_token() ? with_token_ : without_token_;
   if (!places.try_acquire())
-    return refuse(409, "other answers of this kind are being made; ask again in a moment");
-  Answer made;
+    return http::refuse(409, "other answers of this kind are being made; ask again in a moment");
+  http::Answer made;
   std::exception_ptr failure;
   try {
     std::thread thread([&] {

@@ -32,7 +32,7 @@ class FewAtOnce {
   static constexpr int kLowered = 10;  // nice
 
   // 409: enough are being made. Throws what `answer` throws.
-  Answer make(const std::function<Answer()>& answer);
+  http::Answer make(const std::function<http::Answer()>& answer);
 
  private:
   std::counting_semaphore<kMost> with_token_{kMost};

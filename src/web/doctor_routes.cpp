@@ -13,28 +13,28 @@ namespace {
 constexpr double kLeastSeconds = 0.5;
 constexpr double kMostSeconds = 60;
 
-Answer answer(const Json& body, const Doctor& doctor, Mutex& looking) {
+http::Answer answer(const Json& body, const Doctor& doctor, Mutex& looking) {
   const auto seconds = body.is_object() ? body.find("seconds") : body.end();
   const bool is_given = body.is_object() && seconds != body.end() && seconds->is_number();
   const double time = is_given ? seconds->get<double>() : 0;
   if (!(time >= kLeastSeconds && time <= kMostSeconds))
-    return refuse(400, "say how long to look, from 0.5 to 60: {\"seconds\": 8}");
+    return http::refuse(400, "say how long to look, from 0.5 to 60: {\"seconds\": 8}");
   if (!looking.try_lock())
-    return refuse(409, "the robot is being examined already; ask again in a moment");
+    return http::refuse(409, "the robot is being examined already; ask again in a moment");
   const MutexLock lock(looking, std::adopt_lock);
   auto report = doctor(from_seconds(time));
-  if (!report) return refuse(503, report.error());
+  if (!report) return http::refuse(503, report.error());
   return {200, std::move(*report)};
 }
 
 }  // namespace
 
-std::vector<Route> doctor_routes(Doctor doctor) {
-  return {{Method::kPost, "/api/doctor",
+std::vector<http::Route> doctor_routes(Doctor doctor) {
+  return {{http::Method::kPost, "/api/doctor",
            [doctor = std::move(doctor), looking = std::make_shared<Mutex>()](const Json& body) {
              return answer(body, doctor, *looking);
            },
-           Role::kOperate}};
+           http::Role::kOperate}};
 }
 
 Expected<Json> examine_robot(Duration time) {

@@ -14,47 +14,48 @@ namespace {
 constexpr double kMostBack = 7 * 86'400;  // s
 constexpr int kMostSecondsOfReplay = 60;
 
-Answer look_back(const std::string& rules, std::int64_t seconds,
-                 const std::filesystem::path& journal) {
+http::Answer look_back(const std::string& rules, std::int64_t seconds,
+                       const std::filesystem::path& journal) {
   const auto folder = TemporaryFolder::make("aside");
-  if (!folder) return refuse(503, folder.error());
+  if (!folder) return http::refuse(503, folder.error());
   const std::string file = *folder / "my.rules";
-  if (const auto written = write_text(file, rules); !written) return refuse(503, written.error());
+  if (const auto written = write_text(file, rules); !written)
+    return http::refuse(503, written.error());
   const auto looked =
       run_aside({(own_folder() / "culprit").string(), "replay", journal.string(), "--rules", file,
                  "--since", std::to_string(seconds) + "s", "--json"},
                 *folder, kMostSecondsOfReplay);
-  if (!looked) return refuse(503, "the journal could not be replayed: " + looked.error());
-  if (looked->status != 0) return refuse(422, looked->text);
+  if (!looked) return http::refuse(503, "the journal could not be replayed: " + looked.error());
+  if (looked->status != 0) return http::refuse(422, looked->text);
   Json body = parse_json(looked->text);
-  if (!body.is_object()) return refuse(503, "the replay gave nothing: " + looked->text);
+  if (!body.is_object()) return http::refuse(503, "the replay gave nothing: " + looked->text);
   return {200, std::move(body)};
 }
 
-Answer answer(const Json& body, const JournalOf& journal_of, Mutex& replaying) {
-  const auto text = text_of(body, "text");
+http::Answer answer(const Json& body, const JournalOf& journal_of, Mutex& replaying) {
+  const auto text = http::text_of(body, "text");
   const auto seconds = body.is_object() ? body.find("seconds") : body.end();
   const bool is_given = body.is_object() && seconds != body.end() && seconds->is_number();
   if (!text || !is_given || !(*seconds >= 1) || !(*seconds <= kMostBack))
-    return refuse(
+    return http::refuse(
         400, "send the rules as 'text', and how far to look back as 'seconds', a week at most");
   if (!check(Source("rules", *text)).rules)
-    return refuse(422, "the rules have errors; mend them first");
+    return http::refuse(422, "the rules have errors; mend them first");
   const auto journal = journal_of(*text);
-  if (!journal) return refuse(404, journal.error());
+  if (!journal) return http::refuse(404, journal.error());
   if (!replaying.try_lock())
-    return refuse(409, "another replay is going on; ask again in a moment");
+    return http::refuse(409, "another replay is going on; ask again in a moment");
   const MutexLock lock(replaying, std::adopt_lock);
   return look_back(*text, seconds->get<std::int64_t>(), *journal);
 }
 
 }  // namespace
 
-Route hindsight_route(JournalOf journal_of) {
-  return {Method::kPost, "/api/rules/replay",
+http::Route hindsight_route(JournalOf journal_of) {
+  return {http::Method::kPost, "/api/rules/replay",
           [journal_of = std::move(journal_of), replaying = std::make_shared<Mutex>()](
               const Json& body) { return answer(body, journal_of, *replaying); },
-          Role::kLook};
+          http::Role::kLook};
 }
 
 Expected<std::filesystem::path> usual_journal(const std::string& rules) {

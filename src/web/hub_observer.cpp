@@ -42,8 +42,8 @@ void HubObserver::begins(const Manager& manager, std::function<Remarks()> remark
   is_graph_new_ = true;
   told_control_.clear();
   metrics_.watch(manager);
-  hub_.publish(Kind::kLearned, "{}");  // the old one counts by other rules
-  hub_.publish(Kind::kRobot, to_line(rules_to_json(manager.knowledge().rules)));
+  hub_.publish(http::Kind::kLearned, "{}");  // the old one counts by other rules
+  hub_.publish(http::Kind::kRobot, to_line(rules_to_json(manager.knowledge().rules)));
 }
 
 void HubObserver::stepped(const Runtime::Step& step) {
@@ -63,7 +63,7 @@ void HubObserver::announced(Time at, const EventWords& words, const std::string&
 
 void HubObserver::tell_event(Json json) {
   json["clock"] = rounded_to_ms(wall_());
-  hub_.publish(Kind::kEvent, to_line(json));
+  hub_.publish(http::Kind::kEvent, to_line(json));
 }
 
 void HubObserver::tell_events(std::span<const Event> events) {
@@ -81,20 +81,21 @@ void HubObserver::tell_state(Time now) {
   const Knowledge& knowledge = manager_->knowledge();
   if (is_graph_new_) {
     is_graph_new_ = false;
-    hub_.publish(Kind::kGraph, to_line(graph_to_json(knowledge)));
+    hub_.publish(http::Kind::kGraph, to_line(graph_to_json(knowledge)));
   }
   std::string control = to_line(control_to_json(*manager_, start_));
-  if (control != told_control_) hub_.publish(Kind::kControl, told_control_ = std::move(control));
+  if (control != told_control_)
+    hub_.publish(http::Kind::kControl, told_control_ = std::move(control));
   Json state = state_to_json(knowledge, start_);
   state["clock"] = rounded_to_ms(wall_());
   add_looks(*manager_, state);
   state["incidents"] = incidents_to_json(*manager_, start_);
   if (remarks_) add_remarks(state);
   if (now >= later(told_learned_, kLearnedPeriod)) {
-    hub_.publish(Kind::kLearned, to_line(learned_to_json(knowledge)));
+    hub_.publish(http::Kind::kLearned, to_line(learned_to_json(knowledge)));
     told_learned_ = now;
   }
-  hub_.publish(Kind::kState, to_line(state));
+  hub_.publish(http::Kind::kState, to_line(state));
   told_ = now;
   next_tell_ = later(now, kPeriod);
 }

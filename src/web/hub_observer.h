@@ -29,7 +29,7 @@ class HubObserver : public live::Observer {
   static double wall_clock();
 
   // Hub and metrics must outlive this.
-  HubObserver(Hub& hub, Metrics& metrics, WallClock wall = wall_clock)
+  HubObserver(http::Hub& hub, Metrics& metrics, WallClock wall = wall_clock)
       : hub_(hub), metrics_(metrics), wall_(std::move(wall)) {}
 
   void joined(ros2::NodeEntry& node) override;
@@ -46,7 +46,7 @@ class HubObserver : public live::Observer {
   void tell_state(Time now);
   void add_remarks(Json& state) const;
 
-  Hub& hub_;
+  http::Hub& hub_;
   Metrics& metrics_;
   const WallClock wall_;
   const Manager* manager_ = nullptr;  // null: none has begun

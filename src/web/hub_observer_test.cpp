@@ -23,35 +23,35 @@ struct ToldOnce {
   explicit ToldOnce(std::vector<Observation> observations, live::Observer::Remarks remarks = {}) {
     observer.begins(
         manager, [remarks] { return remarks; }, Time());
-    const Hub::Reader reader(hub);
+    const http::Hub::Reader reader(hub);
     const Time now(Duration(1));
     const auto commands = manager.step(now, observations);
     observer.stepped({now, {}, observations, commands, manager.events()});
   }
-  Json latest(Kind kind) const { return parse_json(*hub.latest(kind)); }
+  Json latest(http::Kind kind) const { return parse_json(*hub.latest(kind)); }
 
   const RuleSet rules = *check(Source("test", kObservedRules)).rules;
   Manager manager{rules, std::make_unique<BayesPlanner>(), {}};
-  Hub hub;
+  http::Hub hub;
   Metrics metrics;
   HubObserver observer{hub, metrics, [] { return 1795538700.1234; }};
 };
 
 TEST(HubObserver, TellsWhatTheClockOnTheWallSays) {
   ToldOnce told({});
-  EXPECT_EQ(told.latest(Kind::kState)["clock"], 1795538700.123);
+  EXPECT_EQ(told.latest(http::Kind::kState)["clock"], 1795538700.123);
   told.observer.announced(Time(), {"trouble", "trouble", EventSeverity::kWarning, Tone::kWarning},
                           "a test");
-  const Hub::Batch batch = told.hub.wait(0, std::chrono::milliseconds(0));
+  const http::Hub::Batch batch = told.hub.wait(0, std::chrono::milliseconds(0));
   const Json event = parse_json(*batch.messages.back().data);
   EXPECT_EQ(event["text"], "a test");
   EXPECT_EQ(event["clock"], 1795538700.123);
 }
 
 TEST(HubObserver, SaysWhetherTheRobotIsHeard) {
-  EXPECT_EQ(ToldOnce({}).latest(Kind::kControl)["hears"], true);
+  EXPECT_EQ(ToldOnce({}).latest(http::Kind::kControl)["hears"], true);
   const ToldOnce deaf({{Time(), HearingLost{"a test"}}});
-  EXPECT_EQ(deaf.latest(Kind::kControl)["hears"], false);
+  EXPECT_EQ(deaf.latest(http::Kind::kControl)["hears"], false);
 }
 
 TEST(HubObserver, TellsAProcessThatIsStoppedFromOneThatIsGone) {
@@ -65,7 +65,7 @@ TEST(HubObserver, TellsAProcessThatIsStoppedFromOneThatIsGone) {
                        seen(1, ProcessState::kRunning),
                        seen(0, ProcessState::kStopped),
                        seen(1, ProcessState::kGone)});
-  const Json state = told.latest(Kind::kState);
+  const Json state = told.latest(http::Kind::kState);
   EXPECT_EQ(state["components"][0]["process"], "stopped");
   EXPECT_EQ(state["components"][1]["process"], "gone");
 }
@@ -77,7 +77,7 @@ TEST(HubObserver, TellsTheStateSoonAfterAnEvent) {
     return Observation{Time(), ProcessSeen{ComponentId(0), process, 12, ""}};
   };
   ToldOnce told({{Time(), NodeAppeared{"/camera"}}, seen(ProcessState::kRunning)});
-  const Hub::Reader reader(told.hub);
+  const http::Hub::Reader reader(told.hub);
   const Time before(Duration(1));
   EXPECT_EQ(told.observer.next_look(), later(before, HubObserver::kPeriod));
   const Time now = later(before, std::chrono::milliseconds(10));
@@ -90,7 +90,7 @@ TEST(HubObserver, TellsTheStateSoonAfterAnEvent) {
 
 TEST(HubObserver, ShowsOtherNodesOfTheSameNameWithItsComponent) {
   const ToldOnce told({}, {{"/camera", "kill 12 or 13"}});
-  const Json state = told.latest(Kind::kState);
+  const Json state = told.latest(http::Kind::kState);
   EXPECT_EQ(state["components"][0]["remark"], "kill 12 or 13");
   EXPECT_FALSE(state["components"][1].contains("remark"));
 }

@@ -6,41 +6,41 @@ namespace {
 using namespace std::chrono_literals;
 
 // The state is published while a client reads, so a single call reads for a moment.
-Answer newest(Hub& hub, Kind kind) {
+http::Answer newest(http::Hub& hub, http::Kind kind) {
   constexpr auto kPatience = 1s;
-  const Hub::Reader reader(hub);
+  const http::Hub::Reader reader(hub);
   const auto known = hub.latest(kind);
   const auto end = std::chrono::steady_clock::now() + kPatience;
   auto newest = known;
   for (std::uint64_t seen = 0; newest == known && std::chrono::steady_clock::now() < end;) {
-    const Hub::Batch batch = hub.wait(seen, 50ms);
+    const http::Hub::Batch batch = hub.wait(seen, 50ms);
     if (!batch.messages.empty()) seen = batch.messages.back().number;
     newest = hub.latest(kind);
-    if (kind != Kind::kState && newest) break;
+    if (kind != http::Kind::kState && newest) break;
   }
-  if (!newest) return refuse(503, "the manager has not said anything yet; ask again");
+  if (!newest) return http::refuse(503, "the manager has not said anything yet; ask again");
   return {200, parse_json(*newest)};
 }
 
-Answer events(Hub& hub) {
+http::Answer events(http::Hub& hub) {
   Json list = Json::array();
   std::uint64_t seen = 0;
   while (true) {
-    const Hub::Batch batch = hub.wait(seen, 0ms);
+    const http::Hub::Batch batch = hub.wait(seen, 0ms);
     if (batch.messages.empty()) return {200, list};
     seen = batch.messages.back().number;
-    for (const Message& message : batch.messages) {
-      if (message.kind == Kind::kEvent) list.push_back(parse_json(*message.data));
+    for (const http::Message& message : batch.messages) {
+      if (message.kind == http::Kind::kEvent) list.push_back(parse_json(*message.data));
     }
   }
 }
 
 // As culprit beliefs export writes it (docs/journal.md): what differs from what it began from.
-Answer beliefs(Hub& hub) {
-  const Answer robot = newest(hub, Kind::kRobot);
-  const Answer state = newest(hub, Kind::kState);
+http::Answer beliefs(http::Hub& hub) {
+  const http::Answer robot = newest(hub, http::Kind::kRobot);
+  const http::Answer state = newest(hub, http::Kind::kState);
   if (robot.status != 200 || state.status != 200) return robot.status != 200 ? robot : state;
-  const auto pairs = hub.latest(Kind::kLearned);
+  const auto pairs = hub.latest(http::Kind::kLearned);
   const Json learned = pairs ? parse_json(*pairs) : Json::object();
   const Json& rules = robot.body["rules"];
   const Json& now = state.body["beliefs"];
@@ -52,7 +52,7 @@ Answer beliefs(Hub& hub) {
   for (const Json& rule : rules) {
     for (const Json& strategy : rule["strategies"]) {
       // A reload may have come between the two.
-      if (place >= now.size()) return refuse(503, "the rules are being reloaded; ask again");
+      if (place >= now.size()) return http::refuse(503, "the rules are being reloaded; ask again");
       const Json& belief = now[place];
       const Json& prior = priors[place++];
       if (belief == prior) continue;
@@ -92,14 +92,17 @@ Answer beliefs(Hub& hub) {
 
 }  // namespace
 
-std::vector<Route> live_routes(Hub& hub) {
-  return {
-      {Method::kGet, "/api/robot", [&hub](const Json&) { return newest(hub, Kind::kRobot); }},
-      {Method::kGet, "/api/graph", [&hub](const Json&) { return newest(hub, Kind::kGraph); }},
-      {Method::kGet, "/api/state", [&hub](const Json&) { return newest(hub, Kind::kState); }},
-      {Method::kGet, "/api/control", [&hub](const Json&) { return newest(hub, Kind::kControl); }},
-      {Method::kGet, "/api/beliefs", [&hub](const Json&) { return beliefs(hub); }},
-      {Method::kGet, "/api/events", [&hub](const Json&) { return events(hub); }}};
+std::vector<http::Route> live_routes(http::Hub& hub) {
+  return {{http::Method::kGet, "/api/robot",
+           [&hub](const Json&) { return newest(hub, http::Kind::kRobot); }},
+          {http::Method::kGet, "/api/graph",
+           [&hub](const Json&) { return newest(hub, http::Kind::kGraph); }},
+          {http::Method::kGet, "/api/state",
+           [&hub](const Json&) { return newest(hub, http::Kind::kState); }},
+          {http::Method::kGet, "/api/control",
+           [&hub](const Json&) { return newest(hub, http::Kind::kControl); }},
+          {http::Method::kGet, "/api/beliefs", [&hub](const Json&) { return beliefs(hub); }},
+          {http::Method::kGet, "/api/events", [&hub](const Json&) { return events(hub); }}};
 }
 
 }  // namespace culprit::web

@@ -6,21 +6,21 @@
 namespace culprit::web {
 namespace {
 
-using ros2::MapPicture;
-using ros2::PlanePoint;
+using link::MapPicture;
+using link::PlanePoint;
 
 double rounded(double metres) { return std::round(metres * 1e3) / 1e3; }
 
 Json to_json(const PlanePoint& point) { return Json::array({rounded(point.x), rounded(point.y)}); }
 
-Json to_json(const std::optional<ros2::GridPicture>& grid) {
+Json to_json(const std::optional<link::GridPicture>& grid) {
   if (!grid) return nullptr;
   const auto& [t, rotation] = grid->origin;
   return {{"width", grid->width},
           {"height", grid->height},
           {"resolution", grid->resolution},
           {"coarser", grid->coarser},
-          {"origin", {t.x, t.y, ros2::yaw_of(rotation)}},
+          {"origin", {t.x, t.y, link::yaw_of(rotation)}},
           {"cells", grid->cells}};
 }
 
@@ -45,13 +45,13 @@ Json to_json(const MapPicture& map) {
 
 }  // namespace
 
-Route map_route(MapOf map_of) {
-  return {Method::kGet, "/api/map", [map_of = std::move(map_of)](const Json& query) {
-            const std::string known = text_of(query, "known").value_or("0");
+http::Route map_route(MapOf map_of) {
+  return {http::Method::kGet, "/api/map", [map_of = std::move(map_of)](const Json& query) {
+            const std::string known = http::text_of(query, "known").value_or("0");
             std::uint64_t number = 0;
             std::from_chars(known.data(), known.data() + known.size(), number);
-            const auto map = map_of(text_of(query, "topic").value_or(""), number);
-            return map ? Answer{200, to_json(*map)} : refuse(503, map.error());
+            const auto map = map_of(http::text_of(query, "topic").value_or(""), number);
+            return map ? http::Answer{200, to_json(*map)} : http::refuse(503, map.error());
           }};
 }
 

@@ -38,7 +38,7 @@ struct Counted : testing::Test {
       return true;
     };
   }
-  Answer ask(Hub& hub, std::size_t route) const {
+  http::Answer ask(http::Hub& hub, std::size_t route) const {
     return status_routes(hub, metrics, 20ms)[route].answer(nullptr);
   }
 
@@ -157,10 +157,10 @@ TEST_F(Counted, HasEachStepInOneBucketAndInAllAbove) {
 }
 
 TEST_F(Counted, IsAliveAsLongAsTheLoopComesRoundWhenAskedTo) {
-  Hub hanging([] {});
+  http::Hub hanging([] {});
   EXPECT_EQ(ask(hanging, 0).status, 503);
   EXPECT_EQ(ask(hanging, 1).status, 503);
-  Hub hub([this] { metrics.stepped(1ms, 0, robot.manager()); });
+  http::Hub hub([this] { metrics.stepped(1ms, 0, robot.manager()); });
   EXPECT_EQ(ask(hub, 0).status, 200);
   EXPECT_EQ(ask(hub, 1).status, 503) << "the robot did not have its time yet";
   robot.discover(10s);

@@ -37,16 +37,16 @@ Json parameters_to_json(const LiveInventory::Node& node) {
   return parameters;
 }
 
-std::vector<Route> name_routes(Look look, RuleLoader load) {
-  return {{Method::kPost, "/api/rules/names",
+std::vector<http::Route> name_routes(Look look, RuleLoader load) {
+  return {{http::Method::kPost, "/api/rules/names",
            [look = std::move(look), load = std::move(load)](const Json& body) {
-             const auto text = text_of(body, "text");
-             if (!text) return refuse(400, "send the rules as 'text'");
+             const auto text = http::text_of(body, "text");
+             if (!text) return http::refuse(400, "send the rules as 'text'");
              const auto inventory = look(interest_in(*text, load));
-             if (!inventory) return refuse(503, inventory.error());
-             return Answer{200, to_json(*inventory)};
+             if (!inventory) return http::refuse(503, inventory.error());
+             return http::Answer{200, to_json(*inventory)};
            },
-           Role::kLook}};
+           http::Role::kLook}};
 }
 
 }  // namespace culprit::web

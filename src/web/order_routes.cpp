@@ -28,8 +28,8 @@ std::optional<I> find(const auto& things, const std::optional<std::string>& name
 
 // Two rules may each have a strategy of one name.
 std::optional<StrategyId> find_strategy(const Json& body, const RuleSet& rules) {
-  const auto rule = find<RuleId>(rules.rules, text_of(body, "rule"));
-  const auto name = text_of(body, "strategy");
+  const auto rule = find<RuleId>(rules.rules, http::text_of(body, "rule"));
+  const auto name = http::text_of(body, "strategy");
   if (!rule || !name) return std::nullopt;
   for (const StrategyId id : rules[*rule].strategies) {
     if (rules[id].name == *name) return id;
@@ -38,9 +38,9 @@ std::optional<StrategyId> find_strategy(const Json& body, const RuleSet& rules) 
 }
 
 std::optional<Silenceable> find_silenceable(const Json& body, const RuleSet& rules) {
-  if (const auto component = find<ComponentId>(rules.components, text_of(body, "component")))
+  if (const auto component = find<ComponentId>(rules.components, http::text_of(body, "component")))
     return *component;
-  if (const auto rule = find<RuleId>(rules.rules, text_of(body, "rule"))) return *rule;
+  if (const auto rule = find<RuleId>(rules.rules, http::text_of(body, "rule"))) return *rule;
   return std::nullopt;
 }
 
@@ -62,12 +62,13 @@ std::vector<std::string_view> names_of_all(const auto& things) {
 // Names the wrong part, with similar names, and the remedy.
 Error unknown_strategy(const Json& body, const RuleSet& rules) {
   const std::string remedy = "name a 'rule' and one of its strategies as 'strategy'";
-  const auto rule = find<RuleId>(rules.rules, text_of(body, "rule"));
-  std::string what = no_such("rule", text_of(body, "rule"), names_of_all(rules.rules));
+  const auto rule = find<RuleId>(rules.rules, http::text_of(body, "rule"));
+  std::string what = no_such("rule", http::text_of(body, "rule"), names_of_all(rules.rules));
   if (rule) {
     std::vector<std::string_view> names;
     for (const StrategyId id : rules[*rule].strategies) names.push_back(rules[id].name);
-    what = no_such(("strategy of " + rules[*rule].name).c_str(), text_of(body, "strategy"), names);
+    what = no_such(("strategy of " + rules[*rule].name).c_str(), http::text_of(body, "strategy"),
+                   names);
   }
   return Error{what.empty() ? remedy : what + " (" + remedy + ")"};
 }
@@ -75,8 +76,8 @@ Error unknown_strategy(const Json& body, const RuleSet& rules) {
 Error unknown_silenceable(const Json& body, const RuleSet& rules) {
   const std::string remedy = "name a 'component' or a 'rule' of the rules";
   std::string what =
-      no_such("component", text_of(body, "component"), names_of_all(rules.components));
-  if (what.empty()) what = no_such("rule", text_of(body, "rule"), names_of_all(rules.rules));
+      no_such("component", http::text_of(body, "component"), names_of_all(rules.components));
+  if (what.empty()) what = no_such("rule", http::text_of(body, "rule"), names_of_all(rules.rules));
   return Error{what.empty() ? remedy : what + " (" + remedy + ")"};
 }
 
@@ -103,13 +104,13 @@ Expected<What> about_silence(const std::string& word, const Json& body, const Ru
 
 Expected<What> about_learning(const Json& body, const RuleSet& rules) {
   if (!body.contains("rule")) return What(Forget{});
-  const auto rule = find<RuleId>(rules.rules, text_of(body, "rule"));
+  const auto rule = find<RuleId>(rules.rules, http::text_of(body, "rule"));
   if (!rule) return Error{"there is no such 'rule'; without one, all is forgotten"};
   return What(Forget{*rule});
 }
 
 Expected<What> read(const Json& body, const RuleSet& rules) {
-  const std::string word = text_of(body, "order").value_or("");
+  const std::string word = http::text_of(body, "order").value_or("");
   if (word == "pause") return What(Pause{});
   if (word == "resume") return What(Resume{});
   if (word == "dry_run") {
@@ -131,8 +132,8 @@ Expected<What> read(const Json& body, const RuleSet& rules) {
 Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t number) {
   const auto what = read(body, rules);
   if (!what) return Error{what.error()};
-  const std::string author = text_of(body, "author").value_or("");
-  const std::string reason = text_of(body, "reason").value_or("");
+  const std::string author = http::text_of(body, "author").value_or("");
+  const std::string reason = http::text_of(body, "reason").value_or("");
   if (author.empty()) return Error{"name the author: 'author'"};
   if (author.size() > kLongestText || reason.size() > kLongestText)
     return Error{"keep 'author' and 'reason' short"};
@@ -150,15 +151,16 @@ bool is_late(const Order& order, const Json& body) {
 }
 
 // The manager's reply to the order of this number; empty: none came in time.
-std::optional<Json> word_on(std::uint64_t number, Hub& hub, std::uint64_t after, double patience) {
+std::optional<Json> word_on(std::uint64_t number, http::Hub& hub, std::uint64_t after,
+                            double patience) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
   while (true) {
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
-    const Hub::Batch batch = hub.wait(after, std::max(left, std::chrono::milliseconds(0)));
-    for (const Message& message : batch.messages) {
+    const http::Hub::Batch batch = hub.wait(after, std::max(left, std::chrono::milliseconds(0)));
+    for (const http::Message& message : batch.messages) {
       after = message.number;
-      if (message.kind != Kind::kEvent || message.data->find("\"order_") == std::string::npos)
+      if (message.kind != http::Kind::kEvent || message.data->find("\"order_") == std::string::npos)
         continue;
       Json event = parse_json(*message.data);
       const std::string type = event.value("type", "");
@@ -195,15 +197,17 @@ void OrderDesk::submit(Order order) {
   if (std::holds_alternative<Pause>(order.what)) waiting_ = std::move(order);
 }
 
-Answer OrderDesk::take(const Json& body) {
+http::Answer OrderDesk::take(const Json& body) {
   // The rules that an order was read with must still be those of the manager that gets it.
   MutexLock lock(mutex_);
   const RuleSet& rules = rules_ == nullptr ? no_rules() : *rules_;
   auto order = read_order(body, rules, last_ + 1);
   const bool is_pause = order && std::holds_alternative<Pause>(order->what);
-  if (rules_ == nullptr && !is_pause) return refuse(503, "the rules are being reloaded; ask again");
-  if (!order) return refuse(400, order.error());
-  if (is_late(*order, body)) return refuse(408, "the order came too late, and is not followed");
+  if (rules_ == nullptr && !is_pause)
+    return http::refuse(503, "the rules are being reloaded; ask again");
+  if (!order) return http::refuse(400, order.error());
+  if (is_late(*order, body))
+    return http::refuse(408, "the order came too late, and is not followed");
   const std::uint64_t number = ++last_;
   if (standing_of(*order) != Standing::kNot) {
     const live::KeepOrder keep_it = keeping_(*order, rules);
@@ -217,40 +221,40 @@ Answer OrderDesk::take(const Json& body) {
 
 // Without the lock, for a disk may take its time, and nothing may delay a pause. So the rules may
 // have been replaced before the order is given: it is read anew.
-Answer OrderDesk::keep(const live::KeepOrder& keep, const Json& body, std::uint64_t number) {
+http::Answer OrderDesk::keep(const live::KeepOrder& keep, const Json& body, std::uint64_t number) {
   const live::Kept kept = keep([&] {
     const MutexLock lock(mutex_);
     auto order = read_order(body, rules_ == nullptr ? no_rules() : *rules_, number);
     if (order) submit(std::move(*order));
   });
   if (!kept.is_given)
-    return refuse(503,
-                  "nothing changes, for the next culprit would not know of it: " + kept.why_not);
+    return http::refuse(
+        503, "nothing changes, for the next culprit would not know of it: " + kept.why_not);
   return {202,
           {{"number", number},
            {"kept", kept.is_kept},
            {"text", kept.is_kept ? "kept" : "in force, not kept: " + kept.why_not}}};
 }
 
-Answer give_order(OrderDesk& desk, Hub& hub, const Json& body) {
+http::Answer give_order(OrderDesk& desk, http::Hub& hub, const Json& body) {
   const std::uint64_t before = hub.last();
-  Answer answer = desk.take(body);
+  http::Answer answer = desk.take(body);
   const auto wait = body.is_object() ? body.find("wait_s") : body.end();
   if (answer.status != 202 || wait == body.end() || !wait->is_number()) return answer;
   const double patience = std::clamp(wait->get<double>(), 0.0, kLongestWait);
   const auto word = word_on(answer.body["number"], hub, before, patience);
   if (!word) return answer;
   if (word->value("type", "") == "order_refused")
-    return refuse(409, word->value("refused_because", "it is refused"));
+    return http::refuse(409, word->value("refused_because", "it is refused"));
   answer.status = 200;
   answer.body["order"] = word->value("text", "");
   return answer;
 }
 
-std::vector<Route> order_routes(OrderDesk& desk, Hub& hub) {
-  return {{Method::kPost, "/api/orders",
+std::vector<http::Route> order_routes(OrderDesk& desk, http::Hub& hub) {
+  return {{http::Method::kPost, "/api/orders",
            [&desk, &hub](const Json& body) { return give_order(desk, hub, body); },
-           Role::kOperate}};
+           http::Role::kOperate}};
 }
 
 }  // namespace culprit::web

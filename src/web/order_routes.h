@@ -25,10 +25,10 @@ class OrderDesk : public live::OrderTaker {
 
   // 202: the manager has it, and an event of its number will say what becomes of it. An order with
   // `valid_until` is refused after that time, unless it restrains culprit.
-  Answer take(const Json& body);
+  http::Answer take(const Json& body);
 
  private:
-  Answer keep(const live::KeepOrder& keep, const Json& body, std::uint64_t number);
+  http::Answer keep(const live::KeepOrder& keep, const Json& body, std::uint64_t number);
   void submit(Order order) CULPRIT_REQUIRES(mutex_);
 
   const live::KeepOrders keeping_;
@@ -41,9 +41,9 @@ class OrderDesk : public live::OrderTaker {
 
 // Gives an order as /api/orders does: if the call has `wait_s`, it returns the manager's own answer from `hub`, 200 or, if it refuses the order, 409. Blocks
 // for at most that time.
-Answer give_order(OrderDesk& desk, Hub& hub, const Json& body);
+http::Answer give_order(OrderDesk& desk, http::Hub& hub, const Json& body);
 
 // Both must outlive the routes.
-std::vector<Route> order_routes(OrderDesk& desk, Hub& hub);
+std::vector<http::Route> order_routes(OrderDesk& desk, http::Hub& hub);
 
 }  // namespace culprit::web

@@ -72,7 +72,7 @@ struct Routes : testing::Test {
                           examined_for = time;
                           return Expected<Json>(Json{{"findings", Json::array()}});
                         })}) {
-      for (Route& route : routes) all.push_back(std::move(route));
+      for (http::Route& route : routes) all.push_back(std::move(route));
     }
     const auto log_of = [](const std::string& node) -> Expected<std::vector<ros2::msg::Log>> {
       return std::vector<ros2::msg::Log>{{{7, 500'000'000}, 30, node, "it is dark", "", "", 0}};
@@ -93,8 +93,8 @@ struct Routes : testing::Test {
     std::filesystem::remove(journal);
   }
 
-  Answer ask(const std::string& call, const Json& body = nullptr) const {
-    for (const Route& route : all) {
+  http::Answer ask(const std::string& call, const Json& body = nullptr) const {
+    for (const http::Route& route : all) {
       if (std::string(to_string(route.method)) + " " + route.path == call)
         return route.answer(body);
     }
@@ -113,7 +113,7 @@ struct Routes : testing::Test {
   const std::string journal = path + ".journal";
   const test::TestFolder recordings;
   Duration examined_for{};
-  Hub hub;
+  http::Hub hub;
   Metrics metrics;
   Histories histories;
   RuleDesk desk{path};
@@ -124,11 +124,11 @@ struct Routes : testing::Test {
   std::string reloaded_by;
   std::optional<Studies::Campaign> started;
   LiveInterest looked_at;
-  Expected<ros2::MapPicture> map = ros2::MapPicture{};
+  Expected<link::MapPicture> map = link::MapPicture{};
   std::pair<std::string, std::uint64_t> map_asked;
   std::string injected;
   std::vector<Order> orders;
-  std::vector<Route> all;
+  std::vector<http::Route> all;
 };
 
 Json openapi() { return parse_json(*read_text("src/web/openapi.json")); }
@@ -143,7 +143,7 @@ TEST_F(Routes, AreAllInTheOpenApiDocument) {
   // cli/single_run_route.cpp).
   std::set<std::string> served{"get /api/about", "get /api/openapi.json", "get /api/stream",
                                "post /api/what-if", "post /api/studies/run"};
-  for (const Route& route : all)
+  for (const http::Route& route : all)
     served.insert(std::string(to_string(route.method)) + " " + route.path);
   EXPECT_EQ(told, served);
 }
@@ -159,7 +159,7 @@ TEST_F(Routes, TakeTheExamplesOfTheOpenApiDocument) {
                                       path_told == "/api/rules/replay";
       if (!call.contains("requestBody") || is_of_the_commands) continue;
       const Json& example = call["requestBody"]["content"]["application/json"]["example"];
-      const Answer answer = ask(method + " " + path_told, example);
+      const http::Answer answer = ask(method + " " + path_told, example);
       EXPECT_TRUE(call["responses"].contains(std::to_string(answer.status))) << answer.body;
       EXPECT_LT(answer.status, 300) << method << " " << path_told << ": " << answer.body;
       ++examples;
@@ -176,15 +176,15 @@ TEST_F(Routes, RefuseBodiesOfAnyOtherShape) {
                                     Json::object(),
                                     {{"text", 1}, {"order", 2}, {"name", Json::array()}},
                                     {{"order", "silence"}, {"component", "nobody"}}};
-  for (const Route& route : all) {
-    if (route.method != Method::kPost && route.method != Method::kPut) continue;
+  for (const http::Route& route : all) {
+    if (route.method != http::Method::kPost && route.method != http::Method::kPut) continue;
     for (const Json& body : bodies) EXPECT_GE(route.answer(body).status, 400) << route.path << body;
   }
   EXPECT_TRUE(orders.empty());
 }
 
 TEST_F(Routes, CheckATextAsYouType) {
-  const Answer answer = ask("post /api/rules/ask", {{"text", "RUEL X\n"}});
+  const http::Answer answer = ask("post /api/rules/ask", {{"text", "RUEL X\n"}});
   ASSERT_EQ(answer.body["diagnostics"].size(), 1u);
   EXPECT_THAT(answer.body["diagnostics"][0]["message"].get<std::string>(), HasSubstr("RULE"));
 }
@@ -194,7 +194,7 @@ TEST_F(Routes, DrawATextAsYouType) {
   EXPECT_EQ(drawn["errors"], 0);
   EXPECT_EQ(drawn["components"][0]["name"], "camera");
   EXPECT_EQ(drawn["rules"][0]["adapts"], Json::array({"camera"}));
-  const Answer wrong =
+  const http::Answer wrong =
       ask("post /api/rules/graph", {{"text", std::string(kRouteRules) + "RULE Second\n"}});
   EXPECT_EQ(wrong.status, 200);
   EXPECT_EQ(wrong.body["rules"][1]["mistake"], "error");
@@ -207,7 +207,7 @@ TEST_F(Routes, DrawATextAsYouType) {
 TEST_F(Routes, SaveTheFileThatWasOpened) {
   const Json opened = ask("get /api/rules").body;
   EXPECT_EQ(opened["text"], "");
-  const Answer saved =
+  const http::Answer saved =
       ask("put /api/rules", {{"text", kRouteRules}, {"version", opened["version"]}});
   EXPECT_EQ(saved.status, 200);
   EXPECT_EQ(ask("get /api/rules").body["text"], kRouteRules);
@@ -217,7 +217,7 @@ TEST_F(Routes, SaveTheFileThatWasOpened) {
 TEST_F(Routes, DoNotOverwriteWhatSomebodyElseHasWritten) {
   const Json opened = ask("get /api/rules").body;
   std::ofstream(path) << "# of somebody else\n";
-  const Answer answer =
+  const http::Answer answer =
       ask("put /api/rules", {{"text", kRouteRules}, {"version", opened["version"]}});
   EXPECT_EQ(answer.status, 409);
   EXPECT_EQ(ask("get /api/rules").body["text"], "# of somebody else\n");
@@ -236,7 +236,7 @@ TEST(RuleDesk, IncludesForAPageWhatIsBesideTheFile) {
   write("secret.rules", "hidden\n");
   RuleDesk desk((top / "robot/robot.rules").string());
   const auto said = [&](const std::string& text) {
-    for (const Route& route : rule_routes(desk)) {
+    for (const http::Route& route : rule_routes(desk)) {
       if (route.path == "/api/rules/ask")
         return to_line(route.answer({{"text", text}}).body["diagnostics"]);
     }
@@ -345,11 +345,11 @@ TEST_F(Routes, EscapeWhatWouldSteerATerminal) {
 }
 
 TEST_F(Routes, GiveOrdersToTheManager) {
-  const Answer answer = ask("post /api/orders", {{"order", "run"},
-                                                 {"rule", "CameraSilent"},
-                                                 {"strategy", "restart"},
-                                                 {"author", "ada"},
-                                                 {"reason", "to see"}});
+  const http::Answer answer = ask("post /api/orders", {{"order", "run"},
+                                                       {"rule", "CameraSilent"},
+                                                       {"strategy", "restart"},
+                                                       {"author", "ada"},
+                                                       {"reason", "to see"}});
   EXPECT_EQ(answer.status, 202);
   ASSERT_EQ(orders.size(), 1u);
   EXPECT_TRUE(std::holds_alternative<RunStrategy>(orders[0].what));
@@ -381,7 +381,7 @@ TEST_F(Routes, TakeAPauseAlsoWhileTheRulesAreReplaced) {
 }
 
 TEST_F(Routes, SayWhetherAnOrderIsKept) {
-  const Answer answer = ask("post /api/orders", {{"order", "pause"}, {"author", "ada"}});
+  const http::Answer answer = ask("post /api/orders", {{"order", "pause"}, {"author", "ada"}});
   EXPECT_EQ(answer.status, 202);
   EXPECT_EQ(answer.body["kept"], false);
   EXPECT_EQ(answer.body["text"], "in force, not kept: this is a test");
@@ -392,7 +392,7 @@ TEST_F(Routes, SayWhetherAnOrderIsKept) {
   });
   strict.open(rules, [this](Order order) { orders.push_back(std::move(order)); });
   orders.clear();
-  const Answer refused = strict.take({{"order", "resume"}, {"author", "ada"}});
+  const http::Answer refused = strict.take({{"order", "resume"}, {"author", "ada"}});
   EXPECT_EQ(refused.status, 503);
   EXPECT_THAT(refused.body["error"].get<std::string>(), HasSubstr("the disk is full"));
   EXPECT_TRUE(orders.empty());
@@ -407,18 +407,18 @@ Json word(const char* type, std::uint64_t number) {
 TEST_F(Routes, AnswerWithTheManagersWordWhereItIsWaitedFor) {
   const auto tell = [this](const char* type) {
     order_desk.open(rules, [this, type](const Order& order) {
-      hub.publish(Kind::kEvent, to_line(word(type, order.number + 1)));  // of another one
-      hub.publish(Kind::kEvent, to_line(word(type, order.number)));
+      hub.publish(http::Kind::kEvent, to_line(word(type, order.number + 1)));  // of another one
+      hub.publish(http::Kind::kEvent, to_line(word(type, order.number)));
     });
   };
   const Json pause{{"order", "pause"}, {"author", "ada"}, {"wait_s", 20}};
   tell("order_accepted");
-  const Answer accepted = ask("post /api/orders", pause);
+  const http::Answer accepted = ask("post /api/orders", pause);
   EXPECT_EQ(accepted.status, 200);
   EXPECT_EQ(accepted.body["order"], "ada: pause");
   EXPECT_EQ(accepted.body["kept"], false);
   tell("order_refused");
-  const Answer refused = ask("post /api/orders", pause);
+  const http::Answer refused = ask("post /api/orders", pause);
   EXPECT_EQ(refused.status, 409);
   EXPECT_EQ(refused.body["error"], "so it is");
 }
@@ -443,10 +443,10 @@ TEST_F(Routes, DoNotFollowAnOrderThatCameTooLateUnlessItRestrains) {
 }
 
 TEST_F(Routes, ExportWhatWasLearned) {
-  hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "strategies": [
+  hub.publish(http::Kind::kRobot, R"({"rules": [{"name": "R", "strategies": [
       {"name": "s", "prior": [9, 1]}, {"name": "t", "prior": [5, 5]}]}]})");
-  hub.publish(Kind::kState, R"({"beliefs": [[3, 7], [5, 5]], "priors": [[2, 7], [5, 5]]})");
-  hub.publish(Kind::kLearned, R"({
+  hub.publish(http::Kind::kState, R"({"beliefs": [[3, 7], [5, 5]], "priors": [[2, 7], [5, 5]]})");
+  hub.publish(http::Kind::kLearned, R"({
       "couplings": [[0, 0, 2, 1, 6.5]], "latencies": [[0, 3, 0.5, 2.25]],
       "coincidences": [[0, 0, 4], [0, 7, 2]]})");
   const Json learned = ask("get /api/beliefs").body;
@@ -464,7 +464,7 @@ TEST_F(Routes, ReloadOnlyRulesWithoutErrors) {
   EXPECT_EQ(ask("post /api/rules/reload", {{"author", "ada"}}).status, 202);
   EXPECT_EQ(reloaded_by, "ada");
   is_file_wrong = true;
-  const Answer refused = ask("post /api/rules/reload", {{"author", "ada"}});
+  const http::Answer refused = ask("post /api/rules/reload", {{"author", "ada"}});
   EXPECT_EQ(refused.status, 422);
   EXPECT_THAT(refused.body["error"].get<std::string>(), HasSubstr("line 3"));
 }
@@ -521,7 +521,8 @@ Json incident_told(const char* type, double t) {
 }
 
 TEST_F(Routes, TellIncidentsOfTheStreamWhereThereIsNoJournal) {
-  hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "components": ["camera"], "strategies": [
+  hub.publish(http::Kind::kRobot,
+              R"({"rules": [{"name": "R", "components": ["camera"], "strategies": [
       {"name": "s", "components": ["camera"]}]}]})");
   for (const Json& event :
        {incident_event("failure_detected", 10, {{"rule", "R"}, {"criticality", "ERROR"}}),
@@ -529,8 +530,8 @@ TEST_F(Routes, TellIncidentsOfTheStreamWhereThereIsNoJournal) {
         incident_event("strategy_chosen", 10.1, {{"rule", "R"}, {"strategy", "s"}}),
         incident_event("failure_resolved", 12, {{"rule", "R"}, {"strategy", "s"}}),
         incident_told("incident_closed", 12)})
-    hub.publish(Kind::kEvent, to_line(event));
-  const Answer answer = ask("get /api/incidents", {{"since", "0"}});
+    hub.publish(http::Kind::kEvent, to_line(event));
+  const http::Answer answer = ask("get /api/incidents", {{"since", "0"}});
   ASSERT_EQ(answer.status, 200);
   EXPECT_EQ(answer.body["journal"], nullptr);
   ASSERT_EQ(answer.body["incidents"].size(), 1u);
@@ -544,7 +545,8 @@ TEST_F(Routes, TellIncidentsOfTheStreamWhereThereIsNoJournal) {
   const Json told = ask("get /api/incidents/events", range).body["events"];
   ASSERT_EQ(told.size(), 3u);
   EXPECT_EQ(told[2]["t"], 1'800'000'012);
-  const Answer page = ask("get /api/incidents/page", {{"id", incident["id"]}, {"from", "stream"}});
+  const http::Answer page =
+      ask("get /api/incidents/page", {{"id", incident["id"]}, {"from", "stream"}});
   ASSERT_TRUE(page.text) << page.body;
   EXPECT_EQ(page.text->type, "text/html; charset=utf-8");
   EXPECT_THAT(page.text->content,
@@ -616,7 +618,7 @@ TEST_F(Routes, TellWhichRecordingsAnIncidentHasAndGiveThemAndNoOtherFile) {
       Json event = incident_told(type, 0);
       event["incident"] = began < now - 500 ? "mywpiwzf-0k7" : "mywpiwzf-0k8";
       event["t"] = event["clock"] = began + (type == std::string("incident_opened") ? 0 : 0.5);
-      hub.publish(Kind::kEvent, to_line(event));
+      hub.publish(http::Kind::kEvent, to_line(event));
     }
   }
   const Json made = ask("post /api/recordings", {{"reason", "Dead"}}).body;
@@ -628,7 +630,7 @@ TEST_F(Routes, TellWhichRecordingsAnIncidentHasAndGiveThemAndNoOtherFile) {
   const Json& recording = incidents[0]["recordings"][0];
   EXPECT_EQ(recording["path"], made["recording"]);
   EXPECT_EQ(recording["bytes"], 14);
-  const Answer given = ask("get /api/incidents/recording", {{"name", recording["name"]}});
+  const http::Answer given = ask("get /api/incidents/recording", {{"name", recording["name"]}});
   ASSERT_TRUE(given.file);
   EXPECT_EQ(given.file->path, made["recording"]);
   const std::string name = recording["name"];
@@ -643,7 +645,7 @@ TEST_F(Routes, TellWhichRecordingsAnIncidentHasAndGiveThemAndNoOtherFile) {
 }
 
 TEST(RecordingRoutes, SayWhatToDoWhereNothingIsRecorded) {
-  const Answer answer = recording_routes({}).front().answer(nullptr);
+  const http::Answer answer = recording_routes({}).front().answer(nullptr);
   EXPECT_EQ(answer.status, 409);
   EXPECT_THAT(answer.body["error"].get<std::string>(), HasSubstr("--record"));
 }
@@ -651,9 +653,9 @@ TEST(RecordingRoutes, SayWhatToDoWhereNothingIsRecorded) {
 // ---- one component, and the doctor
 
 TEST_F(Routes, TellWhatAComponentUsesAndLogged) {
-  hub.publish(Kind::kRobot, R"({"components": [{"name": "lidar"}, {"name": "camera"}]})");
-  hub.publish(Kind::kGraph, R"({"nodes": [{"node": "/camera", "component": "camera"}]})");
-  hub.publish(Kind::kState, to_line({{"components", {Json::object(), {{"pid", getpid()}}}}}));
+  hub.publish(http::Kind::kRobot, R"({"components": [{"name": "lidar"}, {"name": "camera"}]})");
+  hub.publish(http::Kind::kGraph, R"({"nodes": [{"node": "/camera", "component": "camera"}]})");
+  hub.publish(http::Kind::kState, to_line({{"components", {Json::object(), {{"pid", getpid()}}}}}));
   const Json camera = ask("get /api/component", {{"name", "camera"}}).body;
   EXPECT_EQ(camera["process"]["pid"], getpid());
   EXPECT_GT(camera["process"]["memory"], 1'000'000);
@@ -667,11 +669,11 @@ TEST_F(Routes, TellWhatAComponentUsesAndLogged) {
 }
 
 TEST_F(Routes, DrawTheRobotOnItsMap) {
-  ros2::MapPicture picture;
+  link::MapPicture picture;
   picture.topics = {"/map"};
   picture.topic = "/map";
   picture.number = 7;
-  picture.grid = ros2::GridPicture{2, 1, 0.05, 1, {{-1, 2, 0}, {}}, "0?"};
+  picture.grid = link::GridPicture{2, 1, 0.05, 1, {{-1, 2, 0}, {}}, "0?"};
   picture.robots = {{"base_link", {1.23456, 2}, 0.5, std::chrono::milliseconds(250)}};
   picture.path = {"/plan", {{0, 0}, {1, 1}}, {}};
   map = picture;
@@ -699,7 +701,7 @@ TEST_F(Routes, ExamineTheRobotForAsLongAsOneAsks) {
 
 TEST_F(Routes, LookBackOnlyWithRulesThatAreRight) {
   EXPECT_EQ(ask("post /api/rules/replay", {{"text", "RUEL X\n"}, {"seconds", 60}}).status, 422);
-  const Answer none = ask("post /api/rules/replay", {{"text", kRouteRules}, {"seconds", 60}});
+  const http::Answer none = ask("post /api/rules/replay", {{"text", kRouteRules}, {"seconds", 60}});
   EXPECT_EQ(none.status, 404);
   EXPECT_EQ(none.body["error"], "nothing is recorded here");
   EXPECT_EQ(ask("post /api/rules/replay", {{"text", kRouteRules}, {"seconds", 1e9}}).status, 400);

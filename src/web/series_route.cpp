@@ -27,10 +27,10 @@ Series series_of(const std::string& name, const Histories& histories) {
   return series;
 }
 
-Answer answer_series(const Json& query, const Histories& histories) {
-  const auto name = text_of(query, "name");
-  if (!name) return refuse(400, "say which: ?name=rate /scan");
-  const double since = std::atof(text_of(query, "since").value_or("0").c_str());
+http::Answer answer_series(const Json& query, const Histories& histories) {
+  const auto name = http::text_of(query, "name");
+  if (!name) return http::refuse(400, "say which: ?name=rate /scan");
+  const double since = std::atof(http::text_of(query, "since").value_or("0").c_str());
   const Series series = series_of(*name, histories);
   Json json{{"clocks", Json::array()}, {"values", Json::array()}};
   for (std::size_t i = 0; i < series.clocks.size(); ++i) {
@@ -72,44 +72,44 @@ std::optional<std::vector<std::string>> names_in(const Json& body) {
   return names;
 }
 
-Answer answer_past(const Json& body, const std::filesystem::path& journal, Mutex& replaying) {
+http::Answer answer_past(const Json& body, const std::filesystem::path& journal, Mutex& replaying) {
   const auto names = names_in(body);
-  if (!names) return refuse(400, "send at most 24 'names' of curves, and 'from' and 'to'");
+  if (!names) return http::refuse(400, "send at most 24 'names' of curves, and 'from' and 'to'");
   Json reach = reach_of(journal);
   if (names->empty() || reach["oldest"].is_null()) return {200, std::move(reach)};
   const double now = 1e-9 * static_cast<double>(wall_now());
   const double from = body.value("from", 0.0);
   const double to = body.value("to", 0.0);
   if (!(from < to) || !(now - from <= kMostPast) || !(from <= now))
-    return refuse(400, "say 'from' and 'to' in seconds since 1970, a month back at most");
+    return http::refuse(400, "say 'from' and 'to' in seconds since 1970, a month back at most");
   if (!replaying.try_lock())
-    return refuse(409, "another replay is going on; ask again in a moment");
+    return http::refuse(409, "another replay is going on; ask again in a moment");
   const MutexLock lock(replaying, std::adopt_lock);
   std::vector<std::string> command =
       replay_of_curves(own_folder() / "culprit", journal, now - from, now - to, *names);
   const auto folder = TemporaryFolder::make("aside");
-  if (!folder) return refuse(503, folder.error());
+  if (!folder) return http::refuse(503, folder.error());
   const auto read = run_aside(std::move(command), *folder, kMostSecondsOfCurves);
-  if (!read) return refuse(503, "the journal could not be replayed: " + read.error());
-  if (read->status != 0) return refuse(404, read->text);
+  if (!read) return http::refuse(503, "the journal could not be replayed: " + read.error());
+  if (read->status != 0) return http::refuse(404, read->text);
   Json curves = parse_json(read->text);
-  if (!curves.is_object()) return refuse(503, "the replay gave nothing: " + read->text);
+  if (!curves.is_object()) return http::refuse(503, "the replay gave nothing: " + read->text);
   curves.update(reach);
   return {200, std::move(curves)};
 }
 
 }  // namespace
 
-Route past_series_route(std::filesystem::path journal) {
-  return {Method::kPost, "/api/series/past",
+http::Route past_series_route(std::filesystem::path journal) {
+  return {http::Method::kPost, "/api/series/past",
           [journal = std::move(journal), replaying = std::make_shared<Mutex>()](const Json& body) {
             return answer_past(body, journal, *replaying);
           },
-          Role::kLook};
+          http::Role::kLook};
 }
 
-Route series_route(const Histories& histories) {
-  return {Method::kGet, "/api/series",
+http::Route series_route(const Histories& histories) {
+  return {http::Method::kGet, "/api/series",
           [&histories](const Json& query) { return answer_series(query, histories); }};
 }
 

@@ -22,22 +22,22 @@ std::optional<std::uint64_t> natural(const Json& body, const char* member, std::
   return value <= most ? std::optional(value) : std::nullopt;
 }
 
-Answer start(const Studies& studies, const Json& body) {
-  const std::string name = text_of(body, "study").value_or("");
+http::Answer start(const Studies& studies, const Json& body) {
+  const std::string name = http::text_of(body, "study").value_or("");
   if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
-    return refuse(400, "'study' has to be sunset, suave or rca");
+    return http::refuse(400, "'study' has to be sunset, suave or rca");
   const auto runs = natural(body, "runs", Studies::kMostRuns);
   if (!runs || *runs == 0)
-    return refuse(
+    return http::refuse(
         400, "'runs' has to be a whole number from 1 to " + std::to_string(Studies::kMostRuns));
   const auto seed = body.contains("seed") ? natural(body, "seed", 1ull << 53) : 1;
-  if (!seed) return refuse(400, "'seed' has to be a whole number");
+  if (!seed) return http::refuse(400, "'seed' has to be a whole number");
   const auto started = studies.start({name, static_cast<std::uint32_t>(*runs), *seed});
-  if (!started) return refuse(409, started.error());
+  if (!started) return http::refuse(409, started.error());
   return {202, {{"started", name}}};
 }
 
-Answer progress(const Studies& studies) {
+http::Answer progress(const Studies& studies) {
   const auto last = studies.progress();
   if (!last) return {200, {{"study", nullptr}}};
   Json json{{"study", last->campaign.study}, {"runs", last->campaign.runs},
@@ -48,30 +48,30 @@ Answer progress(const Studies& studies) {
   return {200, json};
 }
 
-Answer text(const Expected<std::string>& content, const char* type, const char* policy) {
-  if (!content) return refuse(404, content.error());
-  Answer answer;
+http::Answer text(const Expected<std::string>& content, const char* type, const char* policy) {
+  if (!content) return http::refuse(404, content.error());
+  http::Answer answer;
   answer.text = {type, *content, policy};
   return answer;
 }
 
 }  // namespace
 
-std::vector<Route> study_routes(Studies studies) {
+std::vector<http::Route> study_routes(Studies studies) {
   const auto shared = std::make_shared<const Studies>(std::move(studies));
-  return {
-      {Method::kGet, "/api/studies", [shared](const Json&) { return progress(*shared); }},
-      {Method::kPost, "/api/studies", [shared](const Json& body) { return start(*shared, body); }},
-      {Method::kDelete, "/api/studies",
-       [shared](const Json&) {
-         shared->stop();
-         return progress(*shared);
-       }},
-      {Method::kGet, "/api/studies/result",
-       [shared](const Json&) { return text(shared->result(), "application/json", ""); }},
-      {Method::kGet, "/api/studies/report", [shared](const Json&) {
-         return text(shared->report(), "text/html; charset=utf-8", kReportPolicy);
-       }}};
+  return {{http::Method::kGet, "/api/studies", [shared](const Json&) { return progress(*shared); }},
+          {http::Method::kPost, "/api/studies",
+           [shared](const Json& body) { return start(*shared, body); }},
+          {http::Method::kDelete, "/api/studies",
+           [shared](const Json&) {
+             shared->stop();
+             return progress(*shared);
+           }},
+          {http::Method::kGet, "/api/studies/result",
+           [shared](const Json&) { return text(shared->result(), "application/json", ""); }},
+          {http::Method::kGet, "/api/studies/report", [shared](const Json&) {
+             return text(shared->report(), "text/html; charset=utf-8", kReportPolicy);
+           }}};
 }
 
 }  // namespace culprit::web

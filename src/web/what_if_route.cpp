@@ -15,17 +15,17 @@ std::string rendered(std::vector<Diagnostic> diagnostics, const Source& source) 
   return render(diagnostics, source);
 }
 
-Answer what_if(const Json& body, const PlannerFactory& planner, const RuleLoader& load) {
-  const auto rule_text = text_of(body, "rules");
-  const auto state_text = text_of(body, "state");
-  if (!rule_text || !state_text) return refuse(400, "send the texts 'rules' and 'state'");
+http::Answer what_if(const Json& body, const PlannerFactory& planner, const RuleLoader& load) {
+  const auto rule_text = http::text_of(body, "rules");
+  const auto state_text = http::text_of(body, "state");
+  if (!rule_text || !state_text) return http::refuse(400, "send the texts 'rules' and 'state'");
   const Expansion rules = expand(Source(kTextOfPage, *rule_text), load);
   const Checked checked = check(rules);
-  if (!checked.rules) return refuse(422, rendered(checked.diagnostics, rules.source));
+  if (!checked.rules) return http::refuse(422, rendered(checked.diagnostics, rules.source));
   const Source state_source("state", *state_text);
   std::vector<Diagnostic> diagnostics;
   const rule_test::State state = rule_test::read_state(state_source, *checked.rules, diagnostics);
-  if (!diagnostics.empty()) return refuse(422, rendered(diagnostics, state_source));
+  if (!diagnostics.empty()) return http::refuse(422, rendered(diagnostics, state_source));
   const rule_test::Watched watched = rule_test::watch(state, *checked.rules);
   return {200, rule_test::plan_as_json(
                    {*planner(), watched.failures, *watched.knowledge, watched.held_back})};
@@ -33,12 +33,12 @@ Answer what_if(const Json& body, const PlannerFactory& planner, const RuleLoader
 
 }  // namespace
 
-Route what_if_route(PlannerFactory planner, RuleLoader load) {
+http::Route what_if_route(PlannerFactory planner, RuleLoader load) {
   return {
-      Method::kPost, "/api/what-if",
+      http::Method::kPost, "/api/what-if",
       [planner = std::move(planner), load = std::move(load), few = std::make_shared<FewAtOnce>()](
           const Json& body) { return few->make([&] { return what_if(body, planner, load); }); },
-      Role::kLook};
+      http::Role::kLook};
 }
 
 }  // namespace culprit::web

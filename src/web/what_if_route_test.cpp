@@ -15,7 +15,7 @@
 namespace culprit::web {
 namespace {
 
-Answer ask(const Json& body) {
+http::Answer ask(const Json& body) {
   return what_if_route([] { return std::make_unique<PaperPlanner>(); }).answer(body);
 }
 
@@ -26,7 +26,7 @@ Json example() {
 }
 
 TEST(WhatIfRoute, PlansForTheExampleOfTheOpenApiDocument) {
-  const Answer answer = ask(example());
+  const http::Answer answer = ask(example());
   ASSERT_EQ(answer.status, 200) << answer.body;
   ASSERT_EQ(answer.body["failures"].size(), 1u) << answer.body;
   EXPECT_EQ(answer.body["failures"][0]["rule"], "CameraSilent");
@@ -47,7 +47,7 @@ TEST(WhatIfRoute, MakesFewPlansAtOnceAndWithALowerPriority) {
   std::latch all_plan(kAtOnce + 1);
   std::latch is_refused(1);
   std::atomic<int> urgent = 0;
-  const Route route = what_if_route([&] {
+  const http::Route route = what_if_route([&] {
     if (getpriority(PRIO_PROCESS, 0) < FewAtOnce::kLowered) ++urgent;
     all_plan.count_down();
     is_refused.wait();

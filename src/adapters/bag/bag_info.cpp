@@ -76,7 +76,7 @@ void BagInfo::add(const BagMessage& message) {
   ++info.messages;
   info.bytes += message.bytes.size();
   if (!topic.whole) return;
-  const ros2::ByteView payload{reinterpret_cast<const std::uint8_t*>(message.bytes.data()),
+  const rtps::ByteView payload{reinterpret_cast<const std::uint8_t*>(message.bytes.data()),
                                message.bytes.size()};
   const ros2::PayloadFit fit = topic.whole->fit(payload);
   if (fit == ros2::PayloadFit::kFits) return;

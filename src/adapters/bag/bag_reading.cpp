@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kTransitions = "/transition_event";
 
-ros2::ByteView view(std::string_view bytes) {
+rtps::ByteView view(std::string_view bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
@@ -55,7 +55,7 @@ BagReading::BagReading(const RuleSet& rules, const BagContents& contents,
       components_(rules.components.size()),
       lifecycles_(rules.components.size()),
       parameters_(rules.parameters.size()),
-      counted_logs_(ros2::counted_log_levels(rules)) {
+      counted_logs_(link::counted_log_levels(rules)) {
   diagnostics_.on_level = [this](DiagnosticId id, std::uint8_t level) {
     levels_[id.index] = true;
     put(DiagnosticRead{id, level});
@@ -125,7 +125,7 @@ void BagReading::read(const BagMessage& message, std::vector<Observation>& obser
     plans_.push_back(plan_for(contents_.topics()[plans_.size()]));
   Plan& plan = plans_[message.topic];
   const BagTopic& topic = contents_.topics()[message.topic];
-  const ros2::ByteView payload = view(message.bytes);
+  const rtps::ByteView payload = view(message.bytes);
   ++plan.messages;
   now_ = Time(Duration(message.at));
   recorded_at_ = message.recorded_at;
@@ -151,12 +151,12 @@ void BagReading::read(const BagMessage& message, std::vector<Observation>& obser
       if (const auto log = decoded<ros2::msg::Log>(plan, topic, payload)) read_log(*log);
       break;
     case Use::kGoals:
-      if (auto goals = ros2::goals_in(*plan.topic, payload)) put(std::move(*goals));
+      if (auto goals = link::goals_in(*plan.topic, payload)) put(std::move(*goals));
       break;
   }
 }
 
-bool BagReading::decodes(Plan& plan, const BagTopic& topic, ros2::ByteView payload) {
+bool BagReading::decodes(Plan& plan, const BagTopic& topic, rtps::ByteView payload) {
   const ros2::PayloadFit fit = plan.whole ? plan.whole->fit(payload) : ros2::PayloadFit::kFits;
   if (fit == ros2::PayloadFit::kFits) return true;
   note_undecoded(plan, topic, fit == ros2::PayloadFit::kTooLong);
@@ -165,8 +165,8 @@ bool BagReading::decodes(Plan& plan, const BagTopic& topic, ros2::ByteView paylo
 
 template <class Message>
 std::optional<Message> BagReading::decoded(Plan& plan, const BagTopic& topic,
-                                           ros2::ByteView payload) {
-  auto message = ros2::decode<Message>(payload);
+                                           rtps::ByteView payload) {
+  auto message = rtps::decode<Message>(payload);
   if (!message && plan.fields.empty()) note_undecoded(plan, topic, false);
   return message;
 }
@@ -180,7 +180,7 @@ void BagReading::note_undecoded(Plan& plan, const BagTopic& topic, bool is_longe
                 : "they are cut short, or are not of " + topic.type;
 }
 
-void BagReading::read_fields(const Plan& plan, ros2::ByteView payload, bool is_decoded) {
+void BagReading::read_fields(const Plan& plan, rtps::ByteView payload, bool is_decoded) {
   for (const Field& field : plan.fields) {
     Value value;
     const bool is_read =

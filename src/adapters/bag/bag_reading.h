@@ -74,11 +74,11 @@ class BagReading {
 
   Plan plan_for(const BagTopic& topic);
   void plan_fields(const BagTopic& topic, Plan& plan);
-  bool decodes(Plan& plan, const BagTopic& topic, ros2::ByteView payload);
+  bool decodes(Plan& plan, const BagTopic& topic, rtps::ByteView payload);
   template <class Message>
-  std::optional<Message> decoded(Plan& plan, const BagTopic& topic, ros2::ByteView payload);
+  std::optional<Message> decoded(Plan& plan, const BagTopic& topic, rtps::ByteView payload);
   void note_undecoded(Plan& plan, const BagTopic& topic, bool is_longer);
-  void read_fields(const Plan& plan, ros2::ByteView payload, bool is_decoded);
+  void read_fields(const Plan& plan, rtps::ByteView payload, bool is_decoded);
   void read_parameters(const ros2::msg::ParameterEvent& event);
   void read_transition(const std::string& node, const ros2::msg::TransitionEvent& event);
   void read_log(const ros2::msg::Log& log);
@@ -100,7 +100,7 @@ class BagReading {
   const RuleSet& rules_;
   const BagContents& contents_;
   ros2::MessageLibrary& library_;
-  ros2::DiagnosticsReading diagnostics_;
+  link::DiagnosticsReading diagnostics_;
   ComponentBinding binding_;
   std::unordered_map<std::string, std::optional<ComponentId>> nodes_;
   std::unordered_map<std::string, std::string> loggers_;  // to the nodes of components

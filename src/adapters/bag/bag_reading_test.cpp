@@ -65,13 +65,13 @@ TEST_F(BagTest, ShowsTopicsFieldsDiagnosticsAndLifecyclesInTheOrderOfTime) {
     auto first = make("bag_9.db3");
     ros2::msg::TransitionEvent event;
     event.goal_state.label = "active";
-    add(first, 2, 300, text_of(ros2::encode(event)));
+    add(first, 2, 300, text_of(rtps::encode(event)));
     add(first, 1, 100, text_of(number(2.5)));
     ros2::msg::DiagnosticArray array;
     array.status.resize(1);
     array.status[0].name = "segmentation";
     array.status[0].values = {{"entropy", "0.25"}};
-    add(first, 3, 200, text_of(ros2::encode(array)));
+    add(first, 3, 200, text_of(rtps::encode(array)));
     add(first, 1, -5, text_of(number(9)));  // no recorder writes that
     add(first, 3, 250, "garbage");          // nor that
   }
@@ -86,8 +86,8 @@ TEST_F(BagTest, ReadsTypesThatOnlyTheBagDescribes) {
   const std::string definition = "Depth[] depths\n" + std::string(80, '=') +
                                  "\nMSG: my_msgs/Depth\nuint8 quality\nfloat64 metres\n" +
                                  std::string(80, '=') + "\nMSG: my_msgs/Unused\n";
-  ros2::Bytes bytes = {0, 1, 0, 0, 1, 0, 0, 0, 7, 0, 0, 0};  // one depth, of quality 7
-  const ros2::Bytes metres = number(1.5);
+  rtps::Bytes bytes = {0, 1, 0, 0, 1, 0, 0, 0, 7, 0, 0, 0};  // one depth, of quality 7
+  const rtps::Bytes metres = number(1.5);
   bytes.insert(bytes.end(), metres.begin() + 4, metres.end());
   write("a.mcap",
         test::mcap(test::schema(4, "my_msgs/msg/Sonar", definition) +
@@ -112,7 +112,7 @@ TEST_F(BagTest, KnowsNodesByWhatTheyLog) {
   const auto log = [](std::uint64_t at, const std::string& name) {
     ros2::msg::Log message;
     message.name = name;
-    return test::message(1, at, text_of(ros2::encode(message)));
+    return test::message(1, at, text_of(rtps::encode(message)));
   };
   write("a.mcap",
         test::mcap(test::schema(1, "rcl_interfaces/msg/Log", "") + test::channel(1, 1, "/rosout") +

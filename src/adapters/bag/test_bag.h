@@ -22,15 +22,15 @@ namespace culprit::bag::test {
 using culprit::test::value_of;
 
 // Of a std_msgs/Float64.
-inline ros2::Bytes number(double value) {
-  ros2::Bytes bytes = {0, 1, 0, 0};
+inline rtps::Bytes number(double value) {
+  rtps::Bytes bytes = {0, 1, 0, 0};
   std::array<std::uint8_t, 8> raw{};
   std::memcpy(raw.data(), &value, 8);
   bytes.insert(bytes.end(), raw.begin(), raw.end());
   return bytes;
 }
 
-inline std::string_view text_of(const ros2::Bytes& bytes) {
+inline std::string_view text_of(const rtps::Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <sys/stat.h>
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 constexpr std::size_t kShortestToken = 16;
@@ -98,4 +98,4 @@ Expected<std::string> read_secret(const std::string& path, const std::string& wh
   return token;
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

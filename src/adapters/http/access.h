@@ -16,7 +16,7 @@
 
 #include "base/expected.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 // The rights of a token, in ascending order: each includes those before it.
 enum class Role : std::uint8_t {
@@ -54,4 +54,4 @@ std::string make_token();
 // line.
 Expected<std::string> read_secret(const std::string& path, const std::string& what = "token");
 
-}  // namespace culprit::web
+}  // namespace culprit::http

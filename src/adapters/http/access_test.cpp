@@ -9,7 +9,7 @@
 
 #include "http/rate_limit.h"
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 TEST(Access, TakesAddressesAndLocalhostForItself) {
@@ -107,4 +107,4 @@ TEST(RateLimit, AllowsABurstAndThenASteadyRate) {
 }
 
 }  // namespace
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -16,7 +16,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -292,4 +292,4 @@ std::size_t affordable_connections(std::size_t wanted) {
   return std::clamp<std::size_t>(left / 2, 1, wanted);
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -21,7 +21,7 @@
 #include "http/tls.h"
 #include "http/waiting_clients.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 struct ConnectionBudget {
   std::size_t header_bytes = 8u << 10;  // request line included
@@ -76,4 +76,4 @@ class BudgetedServer : public httplib::Server {
 // descriptors are left for everything else that this process opens. At least one.
 std::size_t affordable_connections(std::size_t wanted);
 
-}  // namespace culprit::web
+}  // namespace culprit::http

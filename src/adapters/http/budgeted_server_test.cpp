@@ -18,7 +18,7 @@
 
 #include "http/connection_threads.h"
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 // Its clients may take an hour: no limit of time makes room.
@@ -137,4 +137,4 @@ TEST_F(BusyServer, RefusesOthersInTimeWhileEachThreadIsAtWork) {
 }
 
 }  // namespace
-}  // namespace culprit::web
+}  // namespace culprit::http

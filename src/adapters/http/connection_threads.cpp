@@ -8,7 +8,7 @@
 #include "http/budgeted_server.h"
 #include "http/thread_room.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 namespace {
 
@@ -93,4 +93,4 @@ void ConnectionThreads::shutdown() {
   for (std::thread& thread : threads) thread.join();
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -17,7 +17,7 @@
 
 #include "base/mutex.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 class ConnectionThreads : public httplib::TaskQueue {
  public:
@@ -50,4 +50,4 @@ class ConnectionThreads : public httplib::TaskQueue {
   bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
 };
 
-}  // namespace culprit::web
+}  // namespace culprit::http

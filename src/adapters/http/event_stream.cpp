@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-namespace culprit::web {
+namespace culprit::http {
 
 EventStream::EventStream(Hub& hub, const std::string& last_event_id) : hub_(hub), reader_(hub) {
   const std::string ours = hub_.name() + "-";
@@ -42,4 +42,4 @@ std::string EventStream::hello(bool is_resumed) const {
          (is_resumed ? "true" : "false") + "}\n\n";
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

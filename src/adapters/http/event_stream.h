@@ -13,7 +13,7 @@
 
 #include "http/hub.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 // Used by one thread.
 class EventStream {
@@ -38,4 +38,4 @@ class EventStream {
   bool has_greeted_ = false;
 };
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -20,7 +20,7 @@
 #include "http/event_stream.h"
 #include "http/rate_limit.h"
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 // So many orders can be given while the page has taken all threads that the system gives.
@@ -445,4 +445,4 @@ std::string HttpServer::address() const {
                      http_->options().address, http_->port(), http_->options().access.token);
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

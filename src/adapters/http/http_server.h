@@ -17,7 +17,7 @@
 #include "http/routes.h"
 #include "http/tls.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 // A file of the app that browsers are given. Its texts outlive the server.
 struct Asset {
@@ -72,4 +72,4 @@ class HttpServer {
   std::thread thread_;
 };
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -21,7 +21,7 @@
 #include "base/test_folder.h"
 #include "http/local_client.h"
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 using testing::HasSubstr;
@@ -759,4 +759,4 @@ TEST(LocalClients, DoNotWaitForEverForAServerThatDoesNotAnswer) {
 }
 
 }  // namespace
-}  // namespace culprit::web
+}  // namespace culprit::http

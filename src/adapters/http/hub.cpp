@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-namespace culprit::web {
+namespace culprit::http {
 
 std::string_view to_string(Kind kind) {
   constexpr std::array<std::string_view, kKinds> kNames = {"robot",   "graph",   "state",
@@ -80,4 +80,4 @@ void Hub::close() {
   something_came_.notify_all();
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

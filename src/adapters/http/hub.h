@@ -20,7 +20,7 @@
 
 #include "base/mutex.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 // kLearned may be large, and is only for latest(): no stream has it.
 enum class Kind : std::uint8_t { kRobot, kGraph, kState, kControl, kLearned, kEvent };
@@ -102,4 +102,4 @@ class Hub {
       0;  // number of the newest event that is kept no more
 };
 
-}  // namespace culprit::web
+}  // namespace culprit::http

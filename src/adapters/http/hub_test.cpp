@@ -7,7 +7,7 @@
 
 #include "http/event_stream.h"
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 using namespace std::chrono_literals;
@@ -106,4 +106,4 @@ TEST(EventStream, BeginsAnewForIdsThatAreNotOurs) {
 }
 
 }  // namespace
-}  // namespace culprit::web
+}  // namespace culprit::http

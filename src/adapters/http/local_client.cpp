@@ -7,7 +7,7 @@
 #include "base/live_clock.h"
 #include "http/local_exchange.h"
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 constexpr const char* kJsonType = "application/json";
@@ -131,4 +131,4 @@ Expected<void> LocalClient::follow(const Take& take) const {
   return {};
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -19,7 +19,7 @@
 #include "base/time.h"
 #include "http/routes.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 class LocalClient {
  public:
@@ -58,4 +58,4 @@ class LocalClient {
   std::uint32_t user_;
 };
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -16,7 +16,7 @@
 
 #include "base/live_clock.h"
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 // The answer in the bytes received so far; nothing: it is not whole yet. Errors: it never will be.
@@ -176,4 +176,4 @@ std::vector<Expected<LocalAnswer>> exchange_all(std::span<const LocalRequest> re
   return answers;
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

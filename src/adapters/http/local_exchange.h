@@ -16,7 +16,7 @@
 #include "base/expected.h"
 #include "base/time.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 struct LocalRequest {
   std::filesystem::path socket;
@@ -37,4 +37,4 @@ struct LocalAnswer {
 std::vector<Expected<LocalAnswer>> exchange_all(std::span<const LocalRequest> requests,
                                                 Duration patience);
 
-}  // namespace culprit::web
+}  // namespace culprit::http

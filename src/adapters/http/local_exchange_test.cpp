@@ -15,7 +15,7 @@
 #include "base/live_clock.h"
 #include "base/test_folder.h"
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 using namespace std::chrono_literals;
@@ -149,4 +149,4 @@ TEST(LocalExchange, IsBelievedOnlyOfTheUserThatIsMeant) {
 }
 
 }  // namespace
-}  // namespace culprit::web
+}  // namespace culprit::http

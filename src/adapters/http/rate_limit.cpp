@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace culprit::web {
+namespace culprit::http {
 
 bool RateLimit::allows(const std::string& client, Clock::time_point now) {
   const MutexLock lock(mutex_);
@@ -16,4 +16,4 @@ bool RateLimit::allows(const std::string& client, Clock::time_point now) {
   return true;
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -7,7 +7,7 @@
 
 #include "base/mutex.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 // May be called from any thread.
 class RateLimit {
@@ -33,4 +33,4 @@ class RateLimit {
   std::unordered_map<std::string, Bucket> buckets_ CULPRIT_GUARDED_BY(mutex_);
 };
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -1,6 +1,6 @@
 #include "http/routes.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 Answer refuse(int status, const std::string& message) { return {status, {{"error", message}}}; }
 
@@ -16,4 +16,4 @@ std::optional<std::string> text_of(const Json& body, const char* member) {
   return found->get<std::string>();
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

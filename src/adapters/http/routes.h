@@ -9,7 +9,7 @@
 #include "http/access.h"
 #include "json/json.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 struct Answer {
   struct Text {
@@ -55,4 +55,4 @@ bool client_has_token();
 // The text at `member` of what was sent; nothing if it is none.
 std::optional<std::string> text_of(const Json& body, const char* member);
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,4 +55,4 @@ std::optional<std::size_t> threads_left() {
   return threads_left(groups.str(), "/sys/fs/cgroup");
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

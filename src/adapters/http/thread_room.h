@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace culprit::web {
+namespace culprit::http {
 
 // The least of all groups that it is in. Nothing: no group limits it, or none can be read. `groups`: as
 // /proc/self/cgroup lists them; `mounted`: where they are.
@@ -14,4 +14,4 @@ std::optional<std::size_t> threads_left(const std::string& groups,
                                         const std::filesystem::path& mounted);
 std::optional<std::size_t> threads_left();
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -6,7 +6,7 @@
 
 #include "base/test_folder.h"
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 struct ThreadRoom : testing::Test {
@@ -50,4 +50,4 @@ TEST_F(ThreadRoom, IsUnlimitedWhereNothingIsSaid) {
 }
 
 }  // namespace
-}  // namespace culprit::web
+}  // namespace culprit::http

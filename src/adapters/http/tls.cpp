@@ -13,7 +13,7 @@
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 using TlsClock = std::chrono::steady_clock;
@@ -107,4 +107,4 @@ ssize_t TlsConnection::write(const char* bytes, std::size_t size,
 
 bool TlsConnection::has_pending() const { return SSL_pending(connection_) > 0; }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

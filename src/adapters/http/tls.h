@@ -17,7 +17,7 @@
 struct ssl_ctx_st;
 struct ssl_st;
 
-namespace culprit::web {
+namespace culprit::http {
 
 class TlsContext {
  public:
@@ -59,4 +59,4 @@ class TlsConnection {
   int socket_;
 };
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -4,7 +4,7 @@
 #include <sys/socket.h>
 #include <tuple>
 
-namespace culprit::web {
+namespace culprit::http {
 
 WaitingClients::Connection::Connection(WaitingClients& all, int socket)
     : all_(all), socket_(socket) {
@@ -55,4 +55,4 @@ bool WaitingClients::end_one(Clock::time_point now) {
   return true;
 }
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -14,7 +14,7 @@
 
 #include "base/mutex.h"
 
-namespace culprit::web {
+namespace culprit::http {
 
 class WaitingClients {
  public:
@@ -59,4 +59,4 @@ class WaitingClients {
   std::map<int, Wait> waits_ CULPRIT_GUARDED_BY(mutex_);  // by socket
 };
 
-}  // namespace culprit::web
+}  // namespace culprit::http

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::web {
+namespace culprit::http {
 namespace {
 
 using For = WaitingClients::For;
@@ -79,4 +79,4 @@ TEST_F(WaitingFor, ClientsThatLeftAreForgotten) {
 }
 
 }  // namespace
-}  // namespace culprit::web
+}  // namespace culprit::http

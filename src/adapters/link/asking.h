@@ -6,7 +6,7 @@
 
 #include "ros2/service_client.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // begin() and is_due() on the executor's thread; asks() and ends() on any.
 class Asking {
@@ -16,8 +16,8 @@ class Asking {
   // The node was discovered: from now on it counts.
   void begin() { left_ = kMost; }
   void asks() { ++under_way_; }
-  void ends(const CallResult& result) {
-    if (result.outcome == CallOutcome::kTimedOut) is_open_ = true;
+  void ends(const ros2::CallResult& result) {
+    if (result.outcome == ros2::CallOutcome::kTimedOut) is_open_ = true;
     --under_way_;
   }
   // Once for each time that it was left unanswered.
@@ -29,4 +29,4 @@ class Asking {
   int left_ = 0;  // of the executor's thread
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -9,7 +9,7 @@
 
 #include "base/time.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class ClockStep {
  public:
@@ -31,4 +31,4 @@ class ClockStep {
   std::optional<Duration> offset_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

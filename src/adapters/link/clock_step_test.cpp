@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
@@ -27,4 +27,4 @@ TEST(ClockStep, TakesNoAdjustmentForAStep) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -3,12 +3,12 @@
 #include "base/live_clock.h"
 #include "base/name_grammar.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-void ComponentHosts::on_discovery(const DiscoveryEvent& event) {
-  if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
+void ComponentHosts::on_discovery(const ros2::DiscoveryEvent& event) {
+  if (const auto* info = std::get_if<ros2::ParticipantInfo>(&event)) {
     hosts_.joined(info->guid.prefix(), printable(info->host), is_on_this_machine(*info));
-  } else if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
+  } else if (const auto* gone = std::get_if<ros2::ParticipantGone>(&event)) {
     hosts_.left(gone->guid.prefix(), gone->was_lost, live_now());
   }
 }
@@ -70,4 +70,4 @@ std::map<std::string, std::string> ComponentHosts::nodes_elsewhere() const {
   return nodes_elsewhere_;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -14,7 +14,7 @@
 #include "inbox/inbox.h"
 #include "link/neighbour_hosts.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // All members may be called from any thread.
 class ComponentHosts {
@@ -22,7 +22,7 @@ class ComponentHosts {
   ComponentHosts(NeighbourHosts::HeardLast heard_last, Inbox& inbox)
       : hosts_(std::move(heard_last)), inbox_(inbox) {}
 
-  void on_discovery(const DiscoveryEvent& event);
+  void on_discovery(const ros2::DiscoveryEvent& event);
   // `host`: another computer, as the node's participant announces it; empty: it is on this one.
   void node_joined(const std::string& node, const std::string& host);
   void node_left(const std::string& node);
@@ -55,4 +55,4 @@ class ComponentHosts {
   std::set<std::string> silent_hosts_ CULPRIT_GUARDED_BY(mutex_);  // that were reported
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

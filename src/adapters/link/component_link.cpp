@@ -13,7 +13,7 @@
 #include "ros2/services.h"
 #include "rtps/receive_thread.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
@@ -48,23 +48,23 @@ Lifecycle to_lifecycle(std::uint8_t id) {
   }
 }
 
-msg::Transition to_message(Transition transition) {
+ros2::msg::Transition to_message(Transition transition) {
   switch (transition) {
     case Transition::kConfigure:
-      return {static_cast<std::uint8_t>(TransitionId::kConfigure), ""};
+      return {static_cast<std::uint8_t>(ros2::TransitionId::kConfigure), ""};
     case Transition::kCleanup:
-      return {static_cast<std::uint8_t>(TransitionId::kCleanup), ""};
+      return {static_cast<std::uint8_t>(ros2::TransitionId::kCleanup), ""};
     case Transition::kActivate:
-      return {static_cast<std::uint8_t>(TransitionId::kActivate), ""};
+      return {static_cast<std::uint8_t>(ros2::TransitionId::kActivate), ""};
     case Transition::kDeactivate:
-      return {static_cast<std::uint8_t>(TransitionId::kDeactivate), ""};
+      return {static_cast<std::uint8_t>(ros2::TransitionId::kDeactivate), ""};
   }
   return {};
 }
 
 }  // namespace
 
-ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string node,
+ComponentLink::ComponentLink(ros2::NodeEntry& self, ComponentId component, std::string node,
                              const RuleSet& rules, Inbox& inbox, TypeFinder& types,
                              Starvation& starvation)
     : self_(self),
@@ -78,7 +78,7 @@ ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string
       clients_(self, node_, needs_, inbox),
       tasks_(self.context().executor()) {}
 
-void ComponentLink::lives_in(int pid, const GuidPrefix& participant) {
+void ComponentLink::lives_in(int pid, const rtps::GuidPrefix& participant) {
   pid_ = pid;
   {
     const MutexLock lock(claimed_mutex_);
@@ -87,7 +87,7 @@ void ComponentLink::lives_in(int pid, const GuidPrefix& participant) {
   clients_.ask_only(participant);
 }
 
-void ComponentLink::service_seen(const GraphEndpoint& seen) {
+void ComponentLink::service_seen(const ros2::GraphEndpoint& seen) {
   const std::string& service = seen.name;
   const TypeFinder::Offer offer{node_, seen.type, seen.service_hash, pid_, seen.type_hash};
   {
@@ -97,11 +97,12 @@ void ComponentLink::service_seen(const GraphEndpoint& seen) {
   const bool is_called =
       std::any_of(needs_.routines.begin(), needs_.routines.end(),
                   [&](const std::string& name) { return service_of(name, node_) == service; });
-  if (is_called && !offer.hash.empty()) types_.find(offer, [](const Expected<MessageLibrary*>&) {});
+  if (is_called && !offer.hash.empty())
+    types_.find(offer, [](const Expected<ros2::MessageLibrary*>&) {});
   if (service == node_ + "/change_state") {
     watch_transitions();
     asking_state_.begin();
-    read_first_state(Haste::kNow);
+    read_first_state(rtps::Haste::kNow);
   }
   if (service == node_ + "/get_parameters") {
     asking_values_.begin();
@@ -116,37 +117,38 @@ void ComponentLink::service_seen(const GraphEndpoint& seen) {
 // ---- what is read without being commanded
 
 void ComponentLink::check_lifecycle() {
-  ServiceClient* client = clients_.has_lifecycle() ? clients_.lifecycle_reader() : nullptr;
+  ros2::ServiceClient* client = clients_.has_lifecycle() ? clients_.lifecycle_reader() : nullptr;
   if (client == nullptr) return;
   client->call(
-      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kProbe,
-      [this](const CallResult& result) { on_lifecycle(result, Told::kIfNew); }, Haste::kSoon);
+      rtps::encode(ros2::srv::GetState::Request{}), ros2::Repeat::kUntilAnswered, kProbe,
+      [this](const ros2::CallResult& result) { on_lifecycle(result, Told::kIfNew); },
+      rtps::Haste::kSoon);
 }
 
 void ComponentLink::ask_again() {
-  if (asking_state_.is_due()) read_first_state(Haste::kSoon);
+  if (asking_state_.is_due()) read_first_state(rtps::Haste::kSoon);
   if (asking_values_.is_due()) read_parameters();
   if (asking_time_.is_due()) ask_time_source(then_of_time_);
   if (asking_anything_.is_due()) note_that_it_answers();
 }
 
-void ComponentLink::read_first_state(Haste haste) {
-  ServiceClient* client = clients_.lifecycle_reader();
+void ComponentLink::read_first_state(rtps::Haste haste) {
+  ros2::ServiceClient* client = clients_.lifecycle_reader();
   if (client == nullptr) return;
   asking_state_.asks();
   client->call(
-      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kJoining,
-      [this](const CallResult& result) {
+      rtps::encode(ros2::srv::GetState::Request{}), ros2::Repeat::kUntilAnswered, kJoining,
+      [this](const ros2::CallResult& result) {
         asking_state_.ends(result);
         on_lifecycle(result, Told::kAlways);
       },
       haste);
 }
 
-void ComponentLink::on_lifecycle(const CallResult& result, Told told) {
-  if (result.outcome != CallOutcome::kAnswered) return;
+void ComponentLink::on_lifecycle(const ros2::CallResult& result, Told told) {
+  if (result.outcome != ros2::CallOutcome::kAnswered) return;
   inbox_.put(Probed{component_, true});
-  const auto response = decode<srv::GetState::Response>(result.reply);
+  const auto response = rtps::decode<ros2::srv::GetState::Response>(result.reply);
   if (response) tell(to_lifecycle(response->current_state.id), told);
 }
 
@@ -158,17 +160,17 @@ void ComponentLink::tell(Lifecycle state, Told told) {
 void ComponentLink::watch_transitions() {
   const MutexLock lock(mutex_);
   if (transitions_) return;
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 10};
-  auto subscription = RawSubscription::create(
-      self_, node_ + "/transition_event", msg::TransitionEvent::kType, kQos, PayloadUse::kWhole,
-      [this](const Sample& sample) { on_transition(sample); });
+  constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 10};
+  auto subscription = ros2::RawSubscription::create(
+      self_, node_ + "/transition_event", ros2::msg::TransitionEvent::kType, kQos,
+      ros2::PayloadUse::kWhole, [this](const ros2::Sample& sample) { on_transition(sample); });
   if (subscription) transitions_ = std::move(*subscription);
 }
 
 // Anybody may send such an event. It is a reason to ask the node for its state, and proves nothing
 // by itself.
-void ComponentLink::on_transition(const Sample& sample) {
-  const auto event = decode<msg::TransitionEvent>(sample.payload);
+void ComponentLink::on_transition(const ros2::Sample& sample) {
+  const auto event = rtps::decode<ros2::msg::TransitionEvent>(sample.payload);
   if (!event) return;
   const Lifecycle state = to_lifecycle(event->goal_state.id);
   const bool is_shut_down =
@@ -184,7 +186,7 @@ void ComponentLink::on_transition(const Sample& sample) {
 }
 
 void ComponentLink::ask_for_transition() {
-  ServiceClient* client = clients_.lifecycle_reader();
+  ros2::ServiceClient* client = clients_.lifecycle_reader();
   std::optional<Claim> claim;
   {
     const MutexLock lock(claimed_mutex_);
@@ -192,19 +194,19 @@ void ComponentLink::ask_for_transition() {
     claimed_.is_asked = claim && client != nullptr;
     if (!claimed_.is_asked) return;
   }
-  client->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kTransitionAsked,
-               [this, claim = *claim](const CallResult& result) {
+  client->call(rtps::encode(ros2::srv::GetState::Request{}), ros2::Repeat::kUntilAnswered,
+               kTransitionAsked, [this, claim = *claim](const ros2::CallResult& result) {
                  on_state(result, claim);
-                 tasks_.post_at(Executor::Clock::now() + kAskedAgain,
+                 tasks_.post_at(ros2::Executor::Clock::now() + kAskedAgain,
                                 [this] { ask_for_transition(); });
                });
 }
 
 // A node with one thread answers nothing during a transition: then its silence confirms that one is
 // under way. Any other state counts only from the node itself, except that it was shut down.
-void ComponentLink::on_state(const CallResult& result, const Claim& claim) {
-  const auto response = result.outcome == CallOutcome::kAnswered
-                            ? decode<srv::GetState::Response>(result.reply)
+void ComponentLink::on_state(const ros2::CallResult& result, const Claim& claim) {
+  const auto response = result.outcome == ros2::CallOutcome::kAnswered
+                            ? rtps::decode<ros2::srv::GetState::Response>(result.reply)
                             : std::nullopt;
   if (response) {
     inbox_.put(Probed{component_, true});
@@ -228,17 +230,18 @@ bool ComponentLink::was_shut_down(const Claim& claim) {
 }
 
 void ComponentLink::read_parameters() {
-  ServiceClient* client = clients_.parameter_reader();
+  ros2::ServiceClient* client = clients_.parameter_reader();
   if (client == nullptr) return;
   for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
     if (rules_.parameters[p].component != component_) continue;
     // One by one: a name that is not declared would leave all of them unanswered.
     asking_values_.asks();
-    client->call(encode(srv::GetParameters::Request{{rules_.parameters[p].name}}),
-                 Repeat::kUntilAnswered, kJoining, [this, p](const CallResult& result) {
+    client->call(rtps::encode(ros2::srv::GetParameters::Request{{rules_.parameters[p].name}}),
+                 ros2::Repeat::kUntilAnswered, kJoining, [this, p](const ros2::CallResult& result) {
                    asking_values_.ends(result);
-                   if (result.outcome != CallOutcome::kAnswered) return;
-                   const auto response = decode<srv::GetParameters::Response>(result.reply);
+                   if (result.outcome != ros2::CallOutcome::kAnswered) return;
+                   const auto response =
+                       rtps::decode<ros2::srv::GetParameters::Response>(result.reply);
                    if (!response) return;
                    auto value = response->values.size() == 1
                                     ? read_value(rules_.parameters[p].name, response->values[0])
@@ -253,15 +256,17 @@ void ComponentLink::read_parameters() {
 }
 
 void ComponentLink::ask_time_source(std::function<void(bool)> then) {
-  ServiceClient* client = clients_.parameter_reader();
+  ros2::ServiceClient* client = clients_.parameter_reader();
   if (client == nullptr) return;
   then_of_time_ = std::move(then);
   asking_time_.asks();
-  client->call(encode(srv::GetParameters::Request{{"use_sim_time"}}), Repeat::kUntilAnswered,
-               kJoining, [this, then = then_of_time_](const CallResult& result) {
+  client->call(rtps::encode(ros2::srv::GetParameters::Request{{"use_sim_time"}}),
+               ros2::Repeat::kUntilAnswered, kJoining,
+               [this, then = then_of_time_](const ros2::CallResult& result) {
                  asking_time_.ends(result);
-                 if (result.outcome != CallOutcome::kAnswered) return;
-                 const auto response = decode<srv::GetParameters::Response>(result.reply);
+                 if (result.outcome != ros2::CallOutcome::kAnswered) return;
+                 const auto response =
+                     rtps::decode<ros2::srv::GetParameters::Response>(result.reply);
                  if (response && response->values.size() == 1) then(response->values[0].bool_value);
                });
 }
@@ -272,23 +277,23 @@ void ComponentLink::ask_time_source_again() {
 
 // One that answered once, and ceases to, hangs.
 void ComponentLink::note_that_it_answers() {
-  const auto note = [this](const CallResult& result) {
+  const auto note = [this](const ros2::CallResult& result) {
     asking_anything_.ends(result);
-    if (result.outcome == CallOutcome::kAnswered) inbox_.put(Probed{component_, true});
+    if (result.outcome == ros2::CallOutcome::kAnswered) inbox_.put(Probed{component_, true});
   };
   asking_anything_.asks();
-  if (!read_anything(kJoining, Haste::kSoon, note)) asking_anything_.ends({});
+  if (!read_anything(kJoining, rtps::Haste::kSoon, note)) asking_anything_.ends({});
 }
 
 void ComponentLink::check_parameters() {
   if (!misses_parameter_.exchange(false)) return;
-  ServiceClient* client = clients_.parameter_names();
+  ros2::ServiceClient* client = clients_.parameter_names();
   if (client == nullptr) return;
-  client->call(encode(srv::ListParameters::Request{}), Repeat::kUntilAnswered, kJoining,
-               [this](const CallResult& result) {
+  client->call(rtps::encode(ros2::srv::ListParameters::Request{}), ros2::Repeat::kUntilAnswered,
+               kJoining, [this](const ros2::CallResult& result) {
                  constexpr std::size_t kMost = 1000;
-                 if (result.outcome != CallOutcome::kAnswered) return;
-                 auto response = decode<srv::ListParameters::Response>(result.reply);
+                 if (result.outcome != ros2::CallOutcome::kAnswered) return;
+                 auto response = rtps::decode<ros2::srv::ListParameters::Response>(result.reply);
                  if (!response) return;
                  response->names.resize(std::min(response->names.size(), kMost));
                  inbox_.put(ParametersListed{component_, std::move(response->names)});
@@ -322,9 +327,9 @@ void ComponentLink::forget_unanswered() {
 void ComponentLink::probe(int pid, std::function<Time()> heard) {
   // Messages that prove that another computer is reachable may have arrived up to
   // ReceiveThread::kSoon earlier.
-  const Time due = later(live_now(), kProbe + ReceiveThread::kSoon);
-  const auto tell_of = [this, pid, heard = std::move(heard), due](const CallResult& result) {
-    if (result.outcome == CallOutcome::kAnswered) {
+  const Time due = later(live_now(), kProbe + rtps::ReceiveThread::kSoon);
+  const auto tell_of = [this, pid, heard = std::move(heard), due](const ros2::CallResult& result) {
+    if (result.outcome == ros2::CallOutcome::kAnswered) {
       forget_unanswered();
       inbox_.put(Probed{component_, true});
       return;
@@ -334,33 +339,36 @@ void ComponentLink::probe(int pid, std::function<Time()> heard) {
     const bool is_busy = pid != 0 && (is_traced(pid) || is_at_work(pid));
     if (!is_busy && !starvation_.is_recent(now)) unanswered(due, heard);
   };
-  read_anything(kProbe, Haste::kSoon, tell_of);
+  read_anything(kProbe, rtps::Haste::kSoon, tell_of);
 }
 
-void ComponentLink::ask(std::function<void(std::optional<GuidPrefix> answered)> then) {
-  const bool is_asked = read_anything(kProbe, Haste::kNow, [then](const CallResult& result) {
-    then(result.outcome == CallOutcome::kAnswered ? std::optional(result.server) : std::nullopt);
-  });
+void ComponentLink::ask(std::function<void(std::optional<rtps::GuidPrefix> answered)> then) {
+  const bool is_asked =
+      read_anything(kProbe, rtps::Haste::kNow, [then](const ros2::CallResult& result) {
+        then(result.outcome == ros2::CallOutcome::kAnswered ? std::optional(result.server)
+                                                            : std::nullopt);
+      });
   if (!is_asked) then(std::nullopt);
 }
 
 // If the node has a lifecycle, this reads its state, and reports it as check_lifecycle() does.
-bool ComponentLink::read_anything(Duration patience, Haste haste,
-                                  std::function<void(const CallResult&)> then) {
+bool ComponentLink::read_anything(Duration patience, rtps::Haste haste,
+                                  std::function<void(const ros2::CallResult&)> then) {
   const bool is_managed = clients_.has_lifecycle();
-  ServiceClient* client = is_managed ? clients_.lifecycle_reader() : clients_.parameter_reader();
+  ros2::ServiceClient* client =
+      is_managed ? clients_.lifecycle_reader() : clients_.parameter_reader();
   if (client == nullptr) return false;
   if (!is_managed) {
-    client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, patience,
-                 std::move(then), haste);
+    client->call(rtps::encode(ros2::srv::GetParameters::Request{}), ros2::Repeat::kUntilAnswered,
+                 patience, std::move(then), haste);
     return true;
   }
   client->call(
-      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, patience,
-      [this, then = std::move(then)](const CallResult& result) {
+      rtps::encode(ros2::srv::GetState::Request{}), ros2::Repeat::kUntilAnswered, patience,
+      [this, then = std::move(then)](const ros2::CallResult& result) {
         then(result);
-        if (result.outcome != CallOutcome::kAnswered) return;
-        const auto response = decode<srv::GetState::Response>(result.reply);
+        if (result.outcome != ros2::CallOutcome::kAnswered) return;
+        const auto response = rtps::decode<ros2::srv::GetState::Response>(result.reply);
         if (response) tell(to_lifecycle(response->current_state.id), Told::kIfNew);
       },
       haste);
@@ -380,30 +388,30 @@ void ComponentLink::reply(const Command& command, Answer answer) {
   inbox_.put(Reply{command.id, answer.outcome, std::move(answer.value), std::move(answer.text)});
 }
 
-std::optional<ComponentLink::Answer> ComponentLink::why_unanswered(const CallResult& result,
+std::optional<ComponentLink::Answer> ComponentLink::why_unanswered(const ros2::CallResult& result,
                                                                    const Command& command,
                                                                    const std::string& type) const {
   switch (result.outcome) {
-    case CallOutcome::kUnreachable:
+    case ros2::CallOutcome::kUnreachable:
       return Answer{Outcome::kUnreachable, {}, node_ + " offers no " + type + " that answers"};
-    case CallOutcome::kTimedOut:
+    case ros2::CallOutcome::kTimedOut:
       return Answer{Outcome::kTimedOut, {}, "no answer within " + to_string(command.timeout)};
-    case CallOutcome::kAnswered:
+    case ros2::CallOutcome::kAnswered:
       break;
   }
   return std::nullopt;
 }
 
 template <class Service, class Understand>
-void ComponentLink::ask(ServiceClient* client, const typename Service::Request& request,
-                        Repeat repeat, const Command& command, Understand understand) {
+void ComponentLink::ask(ros2::ServiceClient* client, const typename Service::Request& request,
+                        ros2::Repeat repeat, const Command& command, Understand understand) {
   if (client == nullptr)
     return reply(command, {Outcome::kUnreachable, {}, "no client could be made"});
-  client->call(encode(request), repeat, command.timeout,
-               [this, command, understand](const CallResult& result) {
+  client->call(rtps::encode(request), repeat, command.timeout,
+               [this, command, understand](const ros2::CallResult& result) {
                  if (const auto none = why_unanswered(result, command, std::string(Service::kType)))
                    return reply(command, *none);
-                 const auto response = decode<typename Service::Response>(result.reply);
+                 const auto response = rtps::decode<typename Service::Response>(result.reply);
                  if (!response) {
                    return reply(command,
                                 {Outcome::kRefused,
@@ -415,31 +423,32 @@ void ComponentLink::ask(ServiceClient* client, const typename Service::Request& 
 }
 
 void ComponentLink::run(const Command& command, const ChangeLifecycle& what) {
-  ask<srv::ChangeState>(
-      clients_.lifecycle(), {to_message(what.transition)}, Repeat::kNever, command,
-      [](const srv::ChangeState::Response& response) {
+  ask<ros2::srv::ChangeState>(
+      clients_.lifecycle(), {to_message(what.transition)}, ros2::Repeat::kNever, command,
+      [](const ros2::srv::ChangeState::Response& response) {
         return Answer{response.success ? Outcome::kDone : Outcome::kRefused, {}, ""};
       });
 }
 
 void ComponentLink::run(const Command& command, const ReadLifecycle&) {
-  ask<srv::GetState>(clients_.lifecycle_reader(), {}, Repeat::kUntilAnswered, command,
-                     [this](const srv::GetState::Response& response) {
-                       const Lifecycle state = to_lifecycle(response.current_state.id);
-                       tell(state, Told::kAlways);
-                       return Answer{Outcome::kDone, state, ""};
-                     });
+  ask<ros2::srv::GetState>(clients_.lifecycle_reader(), {}, ros2::Repeat::kUntilAnswered, command,
+                           [this](const ros2::srv::GetState::Response& response) {
+                             const Lifecycle state = to_lifecycle(response.current_state.id);
+                             tell(state, Told::kAlways);
+                             return Answer{Outcome::kDone, state, ""};
+                           });
 }
 
 // A list parameter is set as a list: the rules have its text.
-Expected<msg::ParameterValue> ComponentLink::to_set(const std::string& name, const Value& value) {
+Expected<ros2::msg::ParameterValue> ComponentLink::to_set(const std::string& name,
+                                                          const Value& value) {
   std::uint8_t type = 0;
   {
     const MutexLock lock(lists_mutex_);
     const auto list = lists_.find(name);
     if (list != lists_.end()) type = list->second;
   }
-  if (type == 0) return to_parameter_value(value);
+  if (type == 0) return ros2::to_parameter_value(value);
   const auto* text = std::get_if<std::string>(&value);
   auto list = text != nullptr ? list_parameter(*text, type) : std::nullopt;
   if (!list)
@@ -449,7 +458,7 @@ Expected<msg::ParameterValue> ComponentLink::to_set(const std::string& name, con
 }
 
 std::optional<Value> ComponentLink::read_value(const std::string& name,
-                                               const msg::ParameterValue& value) {
+                                               const ros2::msg::ParameterValue& value) {
   {
     const MutexLock lock(lists_mutex_);
     lists_.erase(name);
@@ -461,9 +470,9 @@ std::optional<Value> ComponentLink::read_value(const std::string& name,
 void ComponentLink::run(const Command& command, const SetParameter& what) {
   auto value = to_set(what.name, what.value);
   if (!value) return reply(command, {Outcome::kRefused, {}, value.error()});
-  ask<srv::SetParameters>(
-      clients_.parameters(), {{{what.name, std::move(*value)}}}, Repeat::kNever, command,
-      [name = what.name](const srv::SetParameters::Response& response) {
+  ask<ros2::srv::SetParameters>(
+      clients_.parameters(), {{{what.name, std::move(*value)}}}, ros2::Repeat::kNever, command,
+      [name = what.name](const ros2::srv::SetParameters::Response& response) {
         if (response.results.size() != 1) {
           return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
         }
@@ -473,9 +482,9 @@ void ComponentLink::run(const Command& command, const SetParameter& what) {
 }
 
 void ComponentLink::run(const Command& command, const ReadParameter& what) {
-  ask<srv::GetParameters>(
-      clients_.parameter_reader(), {{what.name}}, Repeat::kUntilAnswered, command,
-      [this, name = what.name](const srv::GetParameters::Response& response) {
+  ask<ros2::srv::GetParameters>(
+      clients_.parameter_reader(), {{what.name}}, ros2::Repeat::kUntilAnswered, command,
+      [this, name = what.name](const ros2::srv::GetParameters::Response& response) {
         auto value =
             response.values.size() == 1 ? read_value(name, response.values[0]) : std::nullopt;
         if (!value) return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
@@ -495,23 +504,24 @@ void ComponentLink::run(const Command& command, const CallService& what) {
                  {Outcome::kUnreachable, {}, node_ + " offers no service " + what.service});
   offer.pid = pid_;
   tasks_.post([this, command, what, offer] {
-    types_.find(offer, [this, command, what, offer](const Expected<MessageLibrary*>& library) {
-      if (!library) return reply(command, {Outcome::kRefused, {}, library.error()});
-      const auto prepared = ServiceCall::prepare(offer.type, what.request, **library);
-      if (!prepared) return reply(command, {Outcome::kRefused, {}, prepared.error()});
-      call(command, offer.type, what.service, *prepared);
-    });
+    types_.find(offer,
+                [this, command, what, offer](const Expected<ros2::MessageLibrary*>& library) {
+                  if (!library) return reply(command, {Outcome::kRefused, {}, library.error()});
+                  const auto prepared = ServiceCall::prepare(offer.type, what.request, **library);
+                  if (!prepared) return reply(command, {Outcome::kRefused, {}, prepared.error()});
+                  call(command, offer.type, what.service, *prepared);
+                });
   });
 }
 
 void ComponentLink::call(const Command& command, const std::string& type,
                          const std::string& service, const ServiceCall& call) {
-  ServiceClient* client = clients_.routine(service, type);
+  ros2::ServiceClient* client = clients_.routine(service, type);
   if (client == nullptr)
     return reply(command, {Outcome::kUnreachable, {}, "no client could be made"});
   client->call(
-      call.request(), Repeat::kNever, command.timeout,
-      [this, command, type, asked = call](const CallResult& result) {
+      call.request(), ros2::Repeat::kNever, command.timeout,
+      [this, command, type, asked = call](const ros2::CallResult& result) {
         if (const auto none = why_unanswered(result, command, type)) return reply(command, *none);
         const auto verdict = asked.judge(result.reply);
         if (!verdict)
@@ -521,19 +531,20 @@ void ComponentLink::call(const Command& command, const std::string& type,
 }
 
 void ComponentLink::run(const Command& command, const ChangeMode& what) {
-  ask<srv::ChangeMode>(
-      clients_.modes(), {what.mode}, Repeat::kNever, command,
-      [](const srv::ChangeMode::Response& response) {
+  ask<ros2::srv::ChangeMode>(
+      clients_.modes(), {what.mode}, ros2::Repeat::kNever, command,
+      [](const ros2::srv::ChangeMode::Response& response) {
         return Answer{response.success ? Outcome::kDone : Outcome::kRefused, {}, ""};
       });
 }
 
 void ComponentLink::run(const Command& command, const ReadMode&) {
-  ServiceClient* client = clients_.modes();
-  ask<srv::GetMode>(client == nullptr ? nullptr : client->probe(), {}, Repeat::kUntilAnswered,
-                    command, [](const srv::GetMode::Response& response) {
-                      return Answer{Outcome::kDone, Value(response.current_mode), ""};
-                    });
+  ros2::ServiceClient* client = clients_.modes();
+  ask<ros2::srv::GetMode>(client == nullptr ? nullptr : client->probe(), {},
+                          ros2::Repeat::kUntilAnswered, command,
+                          [](const ros2::srv::GetMode::Response& response) {
+                            return Answer{Outcome::kDone, Value(response.current_mode), ""};
+                          });
 }
 
 // As in probe(): one that a debugger holds proves nothing, nor one that is at work, nor one that a starved culprit asked.
@@ -541,9 +552,9 @@ void ComponentLink::run(const Command& command, const Probe&) {
   const Time due = later(live_now(), command.timeout);
   const int asked = pid_;
   const auto before = asked == 0 ? std::nullopt : look_at_processor_time(asked);
-  const auto answer = [this, command, due, before](const CallResult& result) {
+  const auto answer = [this, command, due, before](const ros2::CallResult& result) {
     const int pid = pid_;
-    if (result.outcome == CallOutcome::kTimedOut) {
+    if (result.outcome == ros2::CallOutcome::kTimedOut) {
       starvation_.note(due, live_now());
       const auto now = before ? look_at_processor_time(pid) : std::nullopt;
       if (pid != 0 && is_traced(pid))
@@ -556,7 +567,7 @@ void ComponentLink::run(const Command& command, const Probe&) {
     const auto none = why_unanswered(result, command, "service");
     reply(command, none ? *none : Answer{});
   };
-  if (!read_anything(command.timeout, Haste::kNow, answer))
+  if (!read_anything(command.timeout, rtps::Haste::kNow, answer))
     reply(command, {Outcome::kUnreachable, {}, "no client could be made"});
 }
 
@@ -568,4 +579,4 @@ void ComponentLink::run(const Command& command, const StartProcess&) {
   reply(command, {Outcome::kUnreachable, {}, "processes are not steered over DDS"});
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -29,7 +29,7 @@
 #include "ros2/service_client.h"
 #include "ros2/subscription.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class ServiceCall;
 
@@ -39,16 +39,18 @@ class ComponentLink {
  public:
   // `self` is our own node, `node` the component's full name. All references must outlive the link.
   // `types` is asked on the executor's thread, and not after the link is gone.
-  ComponentLink(NodeEntry& self, ComponentId component, std::string node, const RuleSet& rules,
-                Inbox& inbox, TypeFinder& types, Starvation& starvation);
+  ComponentLink(ros2::NodeEntry& self, ComponentId component, std::string node,
+                const RuleSet& rules, Inbox& inbox, TypeFinder& types, Starvation& starvation);
 
   // The process of the node, on this machine; 0: not known. And the participant that holds the
   // node: from now on only its answers count, but for those of modes, which a mode manager gives
   // for others.
-  void lives_in(int pid, const GuidPrefix& participant);
+  void lives_in(int pid, const rtps::GuidPrefix& participant);
 
   // Its modes come from this participant: its own, or that of a mode manager.
-  void modes_come_from(const GuidPrefix& participant) { clients_.modes_come_from(participant); }
+  void modes_come_from(const rtps::GuidPrefix& participant) {
+    clients_.modes_come_from(participant);
+  }
 
   // Reads the parameters again: an event announced that they changed.
   void check_values() { read_parameters(); }
@@ -56,7 +58,7 @@ class ComponentLink {
   // The node was discovered to offer a service: readies the client, reads the present state, and
   // finds out what a routine takes while the node is well enough to be asked. On the executor's
   // thread.
-  void service_seen(const GraphEndpoint& service);
+  void service_seen(const ros2::GraphEndpoint& service);
 
   // A cheap read that proves that the node answers: of its lifecycle state, which is reported as by
   // check_lifecycle(), or of no parameter. `pid` is its process; 0: not known. A missing answer is
@@ -67,7 +69,7 @@ class ComponentLink {
   void probe(int pid, std::function<Time()> heard = {});
   // Asks once, by the same read, whether the node is there, and gives the participant that answered, if any does.
   // `then` may be called before this returns.
-  void ask(std::function<void(std::optional<GuidPrefix> answered)> then);
+  void ask(std::function<void(std::optional<rtps::GuidPrefix> answered)> then);
   // Its computer is known to be unreachable: answers that are still missing are never reported.
   void forget_unanswered();
 
@@ -115,20 +117,21 @@ class ComponentLink {
 
   // Calls and turns the response into the command's Reply by `understand`.
   template <class Service, class Understand>
-  void ask(ServiceClient* client, const typename Service::Request& request, Repeat repeat,
-           const Command& command, Understand understand);
+  void ask(ros2::ServiceClient* client, const typename Service::Request& request,
+           ros2::Repeat repeat, const Command& command, Understand understand);
   void reply(const Command& command, Answer answer);
-  Expected<msg::ParameterValue> to_set(const std::string& name, const Value& value);
-  std::optional<Value> read_value(const std::string& name, const msg::ParameterValue& value);
+  Expected<ros2::msg::ParameterValue> to_set(const std::string& name, const Value& value);
+  std::optional<Value> read_value(const std::string& name, const ros2::msg::ParameterValue& value);
   // Nothing: it was answered.
-  std::optional<Answer> why_unanswered(const CallResult& result, const Command& command,
+  std::optional<Answer> why_unanswered(const ros2::CallResult& result, const Command& command,
                                        const std::string& type) const;
 
   // The cheap read. `then` is called with its result; not at all if no client could be made.
-  bool read_anything(Duration patience, Haste haste, std::function<void(const CallResult&)> then);
-  void read_first_state(Haste haste);
+  bool read_anything(Duration patience, rtps::Haste haste,
+                     std::function<void(const ros2::CallResult&)> then);
+  void read_first_state(rtps::Haste haste);
   enum class Told : std::uint8_t { kAlways, kIfNew };
-  void on_lifecycle(const CallResult& result, Told told);
+  void on_lifecycle(const ros2::CallResult& result, Told told);
   void tell(Lifecycle state, Told told);
   // The content of a transition event.
   struct Claim {
@@ -136,16 +139,16 @@ class ComponentLink {
     bool is_shut_down = false;  // somebody ordered its end
   };
   void watch_transitions();
-  void on_transition(const Sample& sample);
+  void on_transition(const ros2::Sample& sample);
   void ask_for_transition();
-  void on_state(const CallResult& result, const Claim& claim);
+  void on_state(const ros2::CallResult& result, const Claim& claim);
   bool was_shut_down(const Claim& claim);
   bool is_at_work(int pid);
   void unanswered(Time due, const std::function<Time()>& heard);
   void read_parameters();
   void note_that_it_answers();
 
-  NodeEntry& self_;
+  ros2::NodeEntry& self_;
   const ComponentId component_;
   const std::string node_;
   const RuleSet& rules_;
@@ -172,17 +175,17 @@ class ComponentLink {
   Mutex lists_mutex_;  // another one: receive threads take it
   std::map<std::string, std::uint8_t> lists_
       CULPRIT_GUARDED_BY(lists_mutex_);  // parameters that were read to be lists -> type
-  std::unique_ptr<RawSubscription> transitions_;
+  std::unique_ptr<ros2::RawSubscription> transitions_;
 
   // The claims of transition events (kTransition: one is under way), and whether the node is being asked about them.
   struct Claimed {
-    std::optional<GuidPrefix> holder;  // whose events count
-    std::optional<Claim> last;         // since the node was asked
+    std::optional<rtps::GuidPrefix> holder;  // whose events count
+    std::optional<Claim> last;               // since the node was asked
     bool is_asked = false;
   };
   Mutex claimed_mutex_;  // receive threads take it
   Claimed claimed_ CULPRIT_GUARDED_BY(claimed_mutex_);
-  TaskGroup tasks_;  // goes first
+  ros2::TaskGroup tasks_;  // goes first
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 void add(const Adaptation& adaptation, ComponentNeeds& needs) {
@@ -53,4 +53,4 @@ ComponentNeeds needs_of(ComponentId component, const RuleSet& rules) {
   return needs;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

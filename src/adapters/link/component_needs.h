@@ -7,7 +7,7 @@
 
 #include "language/rule_set.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 struct ComponentNeeds {
   bool changes_lifecycle =
@@ -22,4 +22,4 @@ struct ComponentNeeds {
 
 ComponentNeeds needs_of(ComponentId component, const RuleSet& rules);
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

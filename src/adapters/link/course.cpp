@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 double number_in(const Value& value) {
@@ -44,4 +44,4 @@ void ValueCourse::note_text(const Value& value) {
   text = *now;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -8,7 +8,7 @@
 
 #include "base/value.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // The course of a value that was read again and again.
 struct ValueCourse {
@@ -44,4 +44,4 @@ struct StatusCourse {
   bool operator==(const StatusCourse&) const = default;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

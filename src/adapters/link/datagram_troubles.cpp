@@ -4,7 +4,7 @@
 
 #include "rtps/origins.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 void DatagramTroubles::tell(Time now) {
   tell_of_refused();
@@ -13,7 +13,7 @@ void DatagramTroubles::tell(Time now) {
 }
 
 void DatagramTroubles::tell_of_refused() {
-  const DatagramFilter::Refused refused = context_.participant().refused();
+  const rtps::DatagramFilter::Refused refused = context_.participant().refused();
   if (!refused_.is_due(refused.count)) return;
   inbox_.put(LinkTrouble{
       (refused.count == 1 ? "1 datagram was" : std::to_string(refused.count) + " datagrams were") +
@@ -32,11 +32,11 @@ void DatagramTroubles::tell_of_dropped() {
 }
 
 void DatagramTroubles::tell_of_foreign_sources(Time now) {
-  Origins& origins = context_.participant().origins();
+  rtps::Origins& origins = context_.participant().origins();
   origins.check(now);
-  for (const ForeignSource& source : origins.new_sources()) {
+  for (const rtps::ForeignSource& source : origins.new_sources()) {
     std::string name = "a node";
-    for (const Graph::NodeView& node : context_.graph().bare_nodes()) {
+    for (const ros2::Graph::NodeView& node : context_.graph().bare_nodes()) {
       if (node.participant == source.in_name_of) name = node.node.name;
     }
     const std::string owner =
@@ -49,4 +49,4 @@ void DatagramTroubles::tell_of_foreign_sources(Time now) {
   }
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -11,12 +11,12 @@
 #include "link/tenfold.h"
 #include "ros2/context.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class DatagramTroubles {
  public:
   // `context` and `inbox` must outlive it. `has_helper`: the sockets are those of the helper program.
-  DatagramTroubles(Context& context, Inbox& inbox, bool has_helper)
+  DatagramTroubles(ros2::Context& context, Inbox& inbox, bool has_helper)
       : context_(context), inbox_(inbox), has_helper_(has_helper) {}
 
   // Reports what is new (LinkTrouble).
@@ -27,11 +27,11 @@ class DatagramTroubles {
   void tell_of_foreign_sources(Time now);
   void tell_of_dropped();
 
-  Context& context_;
+  ros2::Context& context_;
   Inbox& inbox_;
   const bool has_helper_;
   Tenfold refused_{1};    // datagrams; a robot sends none of them
   Tenfold dropped_{100};  // by our own full sockets; a burst of announcements may cost a few
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 DiagnosticsReading::DiagnosticsReading(const RuleSet& rules) {
   for (std::size_t s = 0; s < rules.signals.size(); ++s) {
@@ -27,19 +27,20 @@ DiagnosticsReading::DiagnosticsReading(const RuleSet& rules) {
   for (const auto& [name, wanted] : levels_) longest_ = std::max(longest_, name.size());
 }
 
-void DiagnosticsReading::read(const msg::DiagnosticArray& message, const MaySay& may_say) {
-  for (const msg::DiagnosticStatus& status : message.status) read(status, may_say);
+void DiagnosticsReading::read(const ros2::msg::DiagnosticArray& message, const MaySay& may_say) {
+  for (const ros2::msg::DiagnosticStatus& status : message.status) read(status, may_say);
   for (std::size_t s = 0; s < message.status.size() && missing_ > 0; ++s)
     tell_name(message.status[s]);
 }
 
-void DiagnosticsReading::read(const msg::DiagnosticStatus& status, const MaySay& may_say) {
+void DiagnosticsReading::read(const ros2::msg::DiagnosticStatus& status, const MaySay& may_say) {
   read_named(status.name, status, may_say);
   if (status.hardware_id != status.name) read_named(status.hardware_id, status, may_say);
-  for (const msg::KeyValue& pair : status.values) read(pair.key, pair.value, may_say);
+  for (const ros2::msg::KeyValue& pair : status.values) read(pair.key, pair.value, may_say);
 }
 
-void DiagnosticsReading::read_named(const std::string& name, const msg::DiagnosticStatus& status,
+void DiagnosticsReading::read_named(const std::string& name,
+                                    const ros2::msg::DiagnosticStatus& status,
                                     const MaySay& may_say) {
   if (name.size() > longest_) return;
   const auto level = levels_.find(name);
@@ -47,7 +48,7 @@ void DiagnosticsReading::read_named(const std::string& name, const msg::Diagnost
     note_found(level->second);
     on_level(level->second.id, status.level);
   }
-  for (const msg::KeyValue& pair : status.values) {
+  for (const ros2::msg::KeyValue& pair : status.values) {
     if (name.size() + 1 + pair.key.size() > longest_) continue;
     read(name + "\n" + pair.key, pair.value, may_say);
     read(name + "_" + pair.key, pair.value, may_say);
@@ -70,15 +71,15 @@ void DiagnosticsReading::note_found(Wanted<Id>& wanted) {
   if (!std::exchange(wanted.was_found, true)) --missing_;
 }
 
-void DiagnosticsReading::tell_name(const msg::DiagnosticStatus& status) {
+void DiagnosticsReading::tell_name(const ros2::msg::DiagnosticStatus& status) {
   const auto fits = [](const std::string& name) { return name.size() <= kLongestName; };
   if (told_.size() >= kMostStatuses || !fits(status.name) || !fits(status.hardware_id)) return;
   if (!told_.insert(status.name + "\n" + status.hardware_id).second) return;
   StatusHeard heard{status.name, status.hardware_id, {}};
-  for (const msg::KeyValue& pair : status.values) {
+  for (const ros2::msg::KeyValue& pair : status.values) {
     if (heard.keys.size() < kMostKeys && fits(pair.key)) heard.keys.push_back(pair.key);
   }
   on_status(std::move(heard));
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -17,7 +17,7 @@
 #include "robot/observation.h"
 #include "ros2/messages.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class DiagnosticsReading {
  public:
@@ -41,7 +41,7 @@ class DiagnosticsReading {
   using MaySay =
       std::function<bool(const std::string& status, std::optional<ComponentId> publisher)>;
   // Calls the three above for what the rules want of `message`.
-  void read(const msg::DiagnosticArray& message, const MaySay& may_say = {});
+  void read(const ros2::msg::DiagnosticArray& message, const MaySay& may_say = {});
 
  private:
   template <class Id>
@@ -52,11 +52,11 @@ class DiagnosticsReading {
     bool was_found = false;
   };
 
-  void read(const msg::DiagnosticStatus& status, const MaySay& may_say);
-  void read_named(const std::string& name, const msg::DiagnosticStatus& status,
+  void read(const ros2::msg::DiagnosticStatus& status, const MaySay& may_say);
+  void read_named(const std::string& name, const ros2::msg::DiagnosticStatus& status,
                   const MaySay& may_say);
   void read(const std::string& name, const std::string& text, const MaySay& may_say);
-  void tell_name(const msg::DiagnosticStatus& status);
+  void tell_name(const ros2::msg::DiagnosticStatus& status);
   template <class Id>
   void note_found(Wanted<Id>& wanted);
 
@@ -68,4 +68,4 @@ class DiagnosticsReading {
   std::unordered_set<std::string> told_;  // "name\nhardware id" of statuses
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

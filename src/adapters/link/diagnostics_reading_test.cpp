@@ -6,7 +6,7 @@
 
 #include "language/checker.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 RuleSet rules_of(const std::string& text) {
@@ -51,7 +51,7 @@ TEST(DiagnosticsReading, FindsSignalsByStatusAndKeyAndByTheirName) {
 TEST(DiagnosticsReading, IsNotBusyForLongWithAStatusThatIsMadeForThat) {
   const RuleSet rules = some_rules();
   Read read(rules);
-  msg::DiagnosticStatus hostile{
+  ros2::msg::DiagnosticStatus hostile{
       0, std::string(2'000'000, 'n'), "", std::string(2'000'000, 'h'), {}};
   hostile.values.resize(125'000);
   const auto began = std::chrono::steady_clock::now();
@@ -61,4 +61,4 @@ TEST(DiagnosticsReading, IsNotBusyForLongWithAStatusThatIsMadeForThat) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

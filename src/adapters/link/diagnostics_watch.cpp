@@ -5,25 +5,25 @@
 #include "base/live_clock.h"
 #include "robot/unreadable.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-Expected<std::unique_ptr<DiagnosticsWatch>> DiagnosticsWatch::create(NodeEntry& self,
+Expected<std::unique_ptr<DiagnosticsWatch>> DiagnosticsWatch::create(ros2::NodeEntry& self,
                                                                      const RuleSet& rules,
                                                                      Inbox& inbox,
                                                                      ComponentOf component_of) {
   std::unique_ptr<DiagnosticsWatch> watch(
       new DiagnosticsWatch(self, rules, inbox, std::move(component_of)));
   if (!watch->is_wanted()) return watch;
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
-  auto subscription = RawSubscription::create(
-      self, "/diagnostics", msg::DiagnosticArray::kType, kQos, PayloadUse::kWholeLater,
-      [raw = watch.get()](const Sample& sample) { raw->on_sample(sample); });
+  constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 1};
+  auto subscription = ros2::RawSubscription::create(
+      self, "/diagnostics", ros2::msg::DiagnosticArray::kType, kQos, ros2::PayloadUse::kWholeLater,
+      [raw = watch.get()](const ros2::Sample& sample) { raw->on_sample(sample); });
   if (!subscription) return Error{subscription.error()};
   watch->subscription_ = std::move(*subscription);
   return watch;
 }
 
-DiagnosticsWatch::DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox,
+DiagnosticsWatch::DiagnosticsWatch(ros2::NodeEntry& self, const RuleSet& rules, Inbox& inbox,
                                    ComponentOf component_of)
     : self_(self),
       inbox_(inbox),
@@ -70,13 +70,13 @@ std::map<std::string, std::string> DiagnosticsWatch::conflicts() const {
   return publishers_.conflicts();
 }
 
-void DiagnosticsWatch::on_sample(const Sample& sample) {
+void DiagnosticsWatch::on_sample(const ros2::Sample& sample) {
   // culprit's own messages are not read.
-  const Guid writer = sample.identity.writer;
+  const rtps::Guid writer = sample.identity.writer;
   if (writer.prefix() == self_.context().participant().guid().prefix()) return;
   const std::size_t size = sample.payload.size();
-  if (size > msg::DiagnosticArray::kLargest) return;
-  auto message = decode<msg::DiagnosticArray>(sample.payload);
+  if (size > ros2::msg::DiagnosticArray::kLargest) return;
+  auto message = rtps::decode<ros2::msg::DiagnosticArray>(sample.payload);
   if (!message) return;
   const MutexLock lock(mutex_);
   const auto known = writers_.find(writer);
@@ -90,10 +90,11 @@ void DiagnosticsWatch::on_sample(const Sample& sample) {
 }
 
 // A writer that no node claims yet is looked up again with its next message.
-void DiagnosticsWatch::look_up(const Guid& writer, std::size_t size, WaitingLookups::Room room,
-                               const msg::DiagnosticArray& message) {
+void DiagnosticsWatch::look_up(const rtps::Guid& writer, std::size_t size,
+                               WaitingLookups::Room room,
+                               const ros2::msg::DiagnosticArray& message) {
   constexpr std::size_t kMostWriters = 10'000;  // the network decides how many there are
-  const Graph::Owner owner = self_.context().graph().owner_of(writer);
+  const ros2::Graph::Owner owner = self_.context().graph().owner_of(writer);
   SignalPublishers::Publisher by{owner.node, owner.pid != 0, owner.node.empty() || owner.counts,
                                  component_of_(owner.node)};
   const MutexLock lock(mutex_);
@@ -110,7 +111,7 @@ void DiagnosticsWatch::look_up(const Guid& writer, std::size_t size, WaitingLook
   read(message, by);
 }
 
-void DiagnosticsWatch::read(const msg::DiagnosticArray& message,
+void DiagnosticsWatch::read(const ros2::msg::DiagnosticArray& message,
                             const SignalPublishers::Publisher& by) {
   reading_.read(message, [&](const std::string& status, std::optional<ComponentId> publisher)
                              CULPRIT_REQUIRES(mutex_) { return may_say(status, publisher, by); });
@@ -140,4 +141,4 @@ void DiagnosticsWatch::on_signal(SignalId signal, const std::string& text) {
   inbox_.put(SignalRead{signal, readable(text)}, urgency);
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

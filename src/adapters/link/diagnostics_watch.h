@@ -21,15 +21,16 @@
 #include "link/waiting_lookups.h"
 #include "ros2/subscription.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class DiagnosticsWatch {
  public:
   // Subscribes if the rules read any diagnostic. All references must outlive the watch.
   // `component_of` is called on the executor's thread.
   using ComponentOf = std::function<std::optional<ComponentId>(const std::string& node)>;
-  static Expected<std::unique_ptr<DiagnosticsWatch>> create(NodeEntry& self, const RuleSet& rules,
-                                                            Inbox& inbox, ComponentOf component_of);
+  static Expected<std::unique_ptr<DiagnosticsWatch>> create(ros2::NodeEntry& self,
+                                                            const RuleSet& rules, Inbox& inbox,
+                                                            ComponentOf component_of);
 
   // An earlier run learned which node publishes that status. From any thread.
   void remember(const std::string& status, const std::string& node);
@@ -42,37 +43,38 @@ class DiagnosticsWatch {
 
  private:
   // Bytes of the messages of writers that are looked up.
-  static constexpr std::size_t kMostWaiting = msg::DiagnosticArray::kLargest;
+  static constexpr std::size_t kMostWaiting = ros2::msg::DiagnosticArray::kLargest;
 
-  DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of);
+  DiagnosticsWatch(ros2::NodeEntry& self, const RuleSet& rules, Inbox& inbox,
+                   ComponentOf component_of);
   bool is_wanted() const;
-  void on_sample(const Sample& sample);
-  void look_up(const Guid& writer, std::size_t size, WaitingLookups::Room room,
-               const msg::DiagnosticArray& message);
-  void read(const msg::DiagnosticArray& message, const SignalPublishers::Publisher& by)
+  void on_sample(const ros2::Sample& sample);
+  void look_up(const rtps::Guid& writer, std::size_t size, WaitingLookups::Room room,
+               const ros2::msg::DiagnosticArray& message);
+  void read(const ros2::msg::DiagnosticArray& message, const SignalPublishers::Publisher& by)
       CULPRIT_REQUIRES(mutex_);
   bool may_say(const std::string& status, std::optional<ComponentId> publisher,
                const SignalPublishers::Publisher& by) CULPRIT_REQUIRES(mutex_);
   void on_level(DiagnosticId diagnostic, std::uint8_t level) CULPRIT_REQUIRES(mutex_);
   void on_signal(SignalId signal, const std::string& text) CULPRIT_REQUIRES(mutex_);
 
-  NodeEntry& self_;
+  ros2::NodeEntry& self_;
   Inbox& inbox_;
   mutable Mutex mutex_;  // receive threads take it: nothing of the middleware is called with it
   DiagnosticsReading reading_ CULPRIT_GUARDED_BY(mutex_);
   SignalPublishers publishers_ CULPRIT_GUARDED_BY(mutex_);
   const ComponentOf component_of_;
   std::set<std::string> nodes_ CULPRIT_GUARDED_BY(mutex_);  // of the graph
-  std::unordered_map<Guid, SignalPublishers::Publisher> writers_
+  std::unordered_map<rtps::Guid, SignalPublishers::Publisher> writers_
       CULPRIT_GUARDED_BY(mutex_);  // that were looked up
   // Those that no node claims: when each was looked up first.
-  std::unordered_map<Guid, Time> unclaimed_ CULPRIT_GUARDED_BY(mutex_);
+  std::unordered_map<rtps::Guid, Time> unclaimed_ CULPRIT_GUARDED_BY(mutex_);
   WaitingLookups waiting_ CULPRIT_GUARDED_BY(mutex_){kMostWaiting};
   // The newest values, by signal and by diagnostic.
   std::unordered_map<std::uint32_t, std::string> last_ CULPRIT_GUARDED_BY(mutex_);
   std::unordered_map<std::uint32_t, std::uint8_t> last_level_ CULPRIT_GUARDED_BY(mutex_);
-  TaskGroup tasks_;  // outlives the one that posts to it
-  std::unique_ptr<RawSubscription> subscription_;
+  ros2::TaskGroup tasks_;  // outlives the one that posts to it
+  std::unique_ptr<ros2::RawSubscription> subscription_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 constexpr int kDeepest = 100;  // a forged tree can be a ring
 
-msg::Vector3 rotated(const msg::Quaternion& q, const msg::Vector3& v) {
+ros2::msg::Vector3 rotated(const ros2::msg::Quaternion& q, const ros2::msg::Vector3& v) {
   // v + 2 w (q x v) + 2 q x (q x v)
-  const msg::Vector3 t{2 * (q.y * v.z - q.z * v.y), 2 * (q.z * v.x - q.x * v.z),
-                       2 * (q.x * v.y - q.y * v.x)};
+  const ros2::msg::Vector3 t{2 * (q.y * v.z - q.z * v.y), 2 * (q.z * v.x - q.x * v.z),
+                             2 * (q.x * v.y - q.y * v.x)};
   return {v.x + q.w * t.x + q.y * t.z - q.z * t.y, v.y + q.w * t.y + q.z * t.x - q.x * t.z,
           v.z + q.w * t.z + q.x * t.y - q.y * t.x};
 }
 
-msg::Quaternion product(const msg::Quaternion& a, const msg::Quaternion& b) {
+ros2::msg::Quaternion product(const ros2::msg::Quaternion& a, const ros2::msg::Quaternion& b) {
   return {
       a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
       a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
@@ -24,16 +24,16 @@ msg::Quaternion product(const msg::Quaternion& a, const msg::Quaternion& b) {
 
 }  // namespace
 
-msg::Vector3 moved_by(const msg::Transform& place, const msg::Vector3& p) {
-  const msg::Vector3 v = rotated(place.rotation, p);
+ros2::msg::Vector3 moved_by(const ros2::msg::Transform& place, const ros2::msg::Vector3& p) {
+  const ros2::msg::Vector3 v = rotated(place.rotation, p);
   return {v.x + place.translation.x, v.y + place.translation.y, v.z + place.translation.z};
 }
 
-double yaw_of(const msg::Quaternion& q) {
+double yaw_of(const ros2::msg::Quaternion& q) {
   return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
 }
 
-bool is_valid(const msg::Transform& transform) {
+bool is_valid(const ros2::msg::Transform& transform) {
   constexpr double kFarthest = 1e9;  // m
   constexpr double kTolerance = 0.1;
   const auto& [t, q] = transform;
@@ -42,8 +42,8 @@ bool is_valid(const msg::Transform& transform) {
   return is_near(t.x) && is_near(t.y) && is_near(t.z) && std::abs(norm - 1) < kTolerance;
 }
 
-void FrameTree::add(const msg::TFMessage& message, Kind kind, Time now) {
-  for (const msg::TransformStamped& each : message.transforms) {
+void FrameTree::add(const ros2::msg::TFMessage& message, Kind kind, Time now) {
+  for (const ros2::msg::TransformStamped& each : message.transforms) {
     const std::size_t longest = std::max(each.header.frame_id.size(), each.child_frame_id.size());
     if (longest > kLongestName || !is_valid(each.transform)) continue;
     if (edges_.size() >= kMostFrames && !edges_.contains(each.child_frame_id)) continue;
@@ -76,4 +76,4 @@ std::vector<std::string> FrameTree::called(std::string_view name) const {
   return all;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -10,14 +10,14 @@
 #include "base/time.h"
 #include "ros2/navigation_messages.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // The point `p` of the frame that is at `place`, in the frame that `place` is given in.
-msg::Vector3 moved_by(const msg::Transform& place, const msg::Vector3& p);
+ros2::msg::Vector3 moved_by(const ros2::msg::Transform& place, const ros2::msg::Vector3& p);
 // About the z axis, in (-pi, pi].
-double yaw_of(const msg::Quaternion& rotation);
+double yaw_of(const ros2::msg::Quaternion& rotation);
 // Its numbers are finite, and the quaternion is a rotation.
-bool is_valid(const msg::Transform& transform);
+bool is_valid(const ros2::msg::Transform& transform);
 
 class FrameTree {
  public:
@@ -27,10 +27,10 @@ class FrameTree {
 
   enum class Kind : std::uint8_t { kMoving, kStatic };
   // Transforms that are not valid, or between frames with longer names, and new frames behind the limit, are dropped.
-  void add(const msg::TFMessage& message, Kind kind, Time now);
+  void add(const ros2::msg::TFMessage& message, Kind kind, Time now);
 
   struct Placed {
-    msg::Transform transform;
+    ros2::msg::Transform transform;
     Duration age{};  // of the oldest transform in between that is not static
   };
   // The place of `frame` in `ancestor`. Nothing: transforms do not lead there.
@@ -43,10 +43,10 @@ class FrameTree {
  private:
   struct Edge {
     std::string parent;
-    msg::Transform transform;
+    ros2::msg::Transform transform;
     std::optional<Time> arrived;  // nothing: it is static
   };
   std::map<std::string, Edge> edges_;  // by child
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -6,14 +6,15 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
 
 constexpr Time kStart{};
 
-msg::TransformStamped edge(const char* parent, const char* child, double x, double y, double yaw) {
+ros2::msg::TransformStamped edge(const char* parent, const char* child, double x, double y,
+                                 double yaw) {
   return {{{}, parent}, child, {{x, y, 0}, {0, 0, std::sin(yaw / 2), std::cos(yaw / 2)}}};
 }
 
@@ -40,10 +41,10 @@ TEST(FrameTree, AStaticTransformDoesNotAge) {
 // Its beams turn the other way round on the map.
 TEST(FrameTree, KnowsALaserThatIsMountedUpsideDown) {
   FrameTree tree;
-  msg::TransformStamped upside_down = edge("base_link", "laser", 0, 0, 0);
+  ros2::msg::TransformStamped upside_down = edge("base_link", "laser", 0, 0, 0);
   upside_down.transform.rotation = {1, 0, 0, 0};
   tree.add({{upside_down}}, FrameTree::Kind::kStatic, kStart);
-  const msg::Vector3 left =
+  const ros2::msg::Vector3 left =
       moved_by(tree.place("laser", "base_link", kStart)->transform, {0, 1, 0});
   EXPECT_NEAR(left.y, -1, 1e-9);
 }
@@ -77,4 +78,4 @@ TEST(FrameTree, FindsARobotInItsNamespace) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

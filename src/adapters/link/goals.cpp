@@ -4,11 +4,11 @@
 
 #include "ros2/messages.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-std::optional<GoalsSeen> goals_in(TopicId topic, ByteView payload) {
+std::optional<GoalsSeen> goals_in(TopicId topic, rtps::ByteView payload) {
   constexpr std::size_t kMost = 1000;  // the network decides how many there are
-  const auto message = decode<msg::GoalStatusArray>(payload);
+  const auto message = rtps::decode<ros2::msg::GoalStatusArray>(payload);
   if (!message) return std::nullopt;
   GoalsSeen seen{topic, {}};
   const auto& all = message->status_list;
@@ -23,4 +23,4 @@ std::optional<GoalsSeen> goals_in(TopicId topic, ByteView payload) {
   return seen;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

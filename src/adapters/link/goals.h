@@ -6,10 +6,10 @@
 #include "robot/observation.h"
 #include "rtps/cdr.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // Decodes action_msgs/msg/GoalStatusArray: at most the newest 1,000 goals. A status that is not known
 // counts as unknown. Empty if the payload is no such message.
-std::optional<GoalsSeen> goals_in(TopicId topic, ByteView payload);
+std::optional<GoalsSeen> goals_in(TopicId topic, rtps::ByteView payload);
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

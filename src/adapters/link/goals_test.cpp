@@ -4,18 +4,18 @@
 
 #include "ros2/messages.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 TEST(Goals, AreReadWithTheirStatus) {
-  msg::GoalStatusArray array;
+  ros2::msg::GoalStatusArray array;
   array.status_list.resize(3);
   array.status_list[0].goal_info.goal_id[0] = 1;
   array.status_list[0].status = 6;
   array.status_list[1].goal_info.goal_id[15] = 1;
   array.status_list[1].status = 2;
   array.status_list[2].status = 42;
-  const auto seen = goals_in(TopicId(3), encode(array));
+  const auto seen = goals_in(TopicId(3), rtps::encode(array));
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen->topic, TopicId(3));
   ASSERT_EQ(seen->goals.size(), 3u);
@@ -23,8 +23,8 @@ TEST(Goals, AreReadWithTheirStatus) {
   EXPECT_EQ(seen->goals[1].status, GoalStatus::kExecuting);
   EXPECT_EQ(seen->goals[2].status, GoalStatus::kUnknown);
   EXPECT_NE(seen->goals[0].id, seen->goals[1].id);
-  EXPECT_FALSE(goals_in(TopicId(0), Bytes{1, 2, 3}));
+  EXPECT_FALSE(goals_in(TopicId(0), rtps::Bytes{1, 2, 3}));
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -6,15 +6,16 @@
 #include "link/neighbour_hosts.h"
 #include "rtps/cdr.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
-constexpr Qos kLeaseQos{.reliability = Reliability::kBestEffort, .depth = 10};
+constexpr rtps::Qos kLeaseQos{.reliability = rtps::Reliability::kBestEffort, .depth = 10};
 
 }  // namespace
 
-Expected<std::unique_ptr<LeaseLink>> LeaseLink::open(Context& context, const Hearing& hearing,
-                                                     Executor& executor, Options options) {
+Expected<std::unique_ptr<LeaseLink>> LeaseLink::open(ros2::Context& context,
+                                                     const ros2::Hearing& hearing,
+                                                     ros2::Executor& executor, Options options) {
   std::unique_ptr<LeaseLink> link(new LeaseLink(context, hearing, std::move(options)));
   const std::vector<std::string> announcements =
       ManagerLease(link->options_.claim, context.participant().guid().prefix()).announcements();
@@ -22,21 +23,21 @@ Expected<std::unique_ptr<LeaseLink>> LeaseLink::open(Context& context, const Hea
   if (!announced) return Error{announced.error()};
   link->writers_ = std::move(*announced);
   if (auto listening = link->listen(); !listening) return Error{listening.error()};
-  link->timer_ = std::make_unique<Timer>(executor, ManagerLease::kPeriod,
-                                         [link = link.get()] { link->say(); });
+  link->timer_ = std::make_unique<ros2::Timer>(executor, ManagerLease::kPeriod,
+                                               [link = link.get()] { link->say(); });
   return link;
 }
 
-LeaseLink::LeaseLink(Context& context, const Hearing& hearing, Options options)
+LeaseLink::LeaseLink(ros2::Context& context, const ros2::Hearing& hearing, Options options)
     : options_(std::move(options)),
       context_(context),
       hearing_(hearing),
       lease_(options_.claim, context.participant().guid().prefix()),
       manages_(options_.manages) {}
 
-Expected<std::vector<std::unique_ptr<Writer>>> LeaseLink::announce(
+Expected<std::vector<std::unique_ptr<ros2::Writer>>> LeaseLink::announce(
     const std::vector<std::string>& announcements) {
-  std::vector<std::unique_ptr<Writer>> writers;
+  std::vector<std::unique_ptr<ros2::Writer>> writers;
   for (const std::string& announcement : announcements) {
     auto writer = context_.participant().create_writer({.topic = ManagerLease::kTopic,
                                                         .type = ManagerLease::kType,
@@ -75,7 +76,7 @@ Expected<void> LeaseLink::listen() {
                                             .qos = kLeaseQos,
                                             .user_data = {},
                                             .on_match = {}},
-                                           [this](const Sample& sample) { on_beat(sample); });
+                                           [this](const ros2::Sample& sample) { on_beat(sample); });
   if (!reader) return Error{reader.error()};
   reader_ = std::move(*reader);
   return {};
@@ -83,32 +84,32 @@ Expected<void> LeaseLink::listen() {
 
 // ---- messages of others
 
-void LeaseLink::on_discovery(const DiscoveryEvent& event) {
+void LeaseLink::on_discovery(const ros2::DiscoveryEvent& event) {
   constexpr std::size_t kMost = 1000;
   const MutexLock lock(mutex_);
   lease_.apply(event, live_now());
-  if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
-    const GuidPrefix prefix = info->guid.prefix();
+  if (const auto* info = std::get_if<ros2::ParticipantInfo>(&event)) {
+    const rtps::GuidPrefix prefix = info->guid.prefix();
     if (neighbours_.size() >= kMost && !neighbours_.contains(prefix)) return;
     neighbours_[prefix] = {printable(info->host), is_on_this_machine(*info)};
-  } else if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
+  } else if (const auto* gone = std::get_if<ros2::ParticipantGone>(&event)) {
     neighbours_.erase(gone->guid.prefix());
   }
 }
 
-void LeaseLink::on_beat(const Sample& sample) {
-  CdrReader message(sample.payload);
+void LeaseLink::on_beat(const ros2::Sample& sample) {
+  rtps::CdrReader message(sample.payload);
   const std::string_view beat = message.read_string();
   const MutexLock lock(mutex_);
   lease_.hear(sample.identity.writer.prefix(), beat, live_now());
 }
 
-bool LeaseLink::is_here(const GuidPrefix& participant) const {
+bool LeaseLink::is_here(const rtps::GuidPrefix& participant) const {
   const auto found = neighbours_.find(participant);
   return found != neighbours_.end() && found->second.is_here;
 }
 
-std::string LeaseLink::host_of(const GuidPrefix& participant) const {
+std::string LeaseLink::host_of(const rtps::GuidPrefix& participant) const {
   const auto found = neighbours_.find(participant);
   const bool is_known = found != neighbours_.end() && !found->second.host.empty();
   return is_known ? found->second.host : "another machine";
@@ -116,24 +117,24 @@ std::string LeaseLink::host_of(const GuidPrefix& participant) const {
 
 std::optional<std::string> LeaseLink::elder() const {
   const MutexLock lock(mutex_);
-  const auto elder = lease_.elder(
-      live_now(), [this](const GuidPrefix& p) CULPRIT_REQUIRES(mutex_) { return is_here(p); });
+  const auto elder = lease_.elder(live_now(), [this](const rtps::GuidPrefix& p)
+                                                  CULPRIT_REQUIRES(mutex_) { return is_here(p); });
   return elder ? std::optional(host_of(*elder)) : std::nullopt;
 }
 
 std::optional<std::string> LeaseLink::elder_at(const std::string& node) const {
   const MutexLock lock(mutex_);
-  const auto elder =
-      lease_.elder_at(node, live_now(),
-                      [this](const GuidPrefix& p) CULPRIT_REQUIRES(mutex_) { return is_here(p); });
+  const auto elder = lease_.elder_at(node, live_now(),
+                                     [this](const rtps::GuidPrefix& p)
+                                         CULPRIT_REQUIRES(mutex_) { return is_here(p); });
   return elder ? std::optional(host_of(*elder)) : std::nullopt;
 }
 
 std::vector<std::string> LeaseLink::strangers() const {
   const MutexLock lock(mutex_);
   std::vector<std::string> hosts;
-  for (const GuidPrefix& each : lease_.strangers(
-           [this](const GuidPrefix& p) CULPRIT_REQUIRES(mutex_) { return is_here(p); }))
+  for (const rtps::GuidPrefix& each : lease_.strangers(
+           [this](const rtps::GuidPrefix& p) CULPRIT_REQUIRES(mutex_) { return is_here(p); }))
     hosts.push_back(host_of(each));
   return hosts;
 }
@@ -178,10 +179,10 @@ void LeaseLink::say() {
     }
   }
   for (const std::string& each : messages) {
-    CdrWriter message;
+    rtps::CdrWriter message;
     message.write_string(each);
     writers_.front()->write(message.take());
   }
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

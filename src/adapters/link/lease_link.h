@@ -15,7 +15,7 @@
 #include "ros2/hearing.h"
 #include "ros2/timer.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class LeaseLink {
  public:
@@ -28,11 +28,12 @@ class LeaseLink {
 
   // All outlive it, and their executor does not run yet; it must not run when this one goes.
   // Errors: the middleware, or the domain's permissions, refuse.
-  static Expected<std::unique_ptr<LeaseLink>> open(Context& context, const Hearing& hearing,
-                                                   Executor& executor, Options options);
+  static Expected<std::unique_ptr<LeaseLink>> open(ros2::Context& context,
+                                                   const ros2::Hearing& hearing,
+                                                   ros2::Executor& executor, Options options);
 
   // On the executor's thread.
-  void on_discovery(const DiscoveryEvent& event);
+  void on_discovery(const ros2::DiscoveryEvent& event);
 
   // From any thread, all of these.
 
@@ -62,21 +63,21 @@ class LeaseLink {
   Expected<void> take_over(std::int64_t term);
 
  private:
-  LeaseLink(Context& context, const Hearing& hearing, Options options);
-  Expected<std::vector<std::unique_ptr<Writer>>> announce(
+  LeaseLink(ros2::Context& context, const ros2::Hearing& hearing, Options options);
+  Expected<std::vector<std::unique_ptr<ros2::Writer>>> announce(
       const std::vector<std::string>& announcements);
   Expected<void> listen();
 
-  bool is_here(const GuidPrefix& participant) const CULPRIT_REQUIRES(mutex_);
-  std::string host_of(const GuidPrefix& participant) const CULPRIT_REQUIRES(mutex_);
+  bool is_here(const rtps::GuidPrefix& participant) const CULPRIT_REQUIRES(mutex_);
+  std::string host_of(const rtps::GuidPrefix& participant) const CULPRIT_REQUIRES(mutex_);
 
-  void on_beat(const Sample& sample);  // on a receive thread
+  void on_beat(const ros2::Sample& sample);  // on a receive thread
 
   const Options options_;
-  Context& context_;
-  const Hearing& hearing_;
-  std::vector<std::unique_ptr<Writer>> writers_;      // the first sends the beats
-  std::vector<std::unique_ptr<Writer>> of_new_term_;  // after take_over()
+  ros2::Context& context_;
+  const ros2::Hearing& hearing_;
+  std::vector<std::unique_ptr<ros2::Writer>> writers_;      // the first sends the beats
+  std::vector<std::unique_ptr<ros2::Writer>> of_new_term_;  // after take_over()
 
   mutable Mutex mutex_;  // the middleware is not called under it
   struct Neighbour {
@@ -85,11 +86,11 @@ class LeaseLink {
   };
   ManagerLease lease_ CULPRIT_GUARDED_BY(mutex_);
   bool manages_ CULPRIT_GUARDED_BY(mutex_) = false;
-  std::map<GuidPrefix, Neighbour> neighbours_
+  std::map<rtps::GuidPrefix, Neighbour> neighbours_
       CULPRIT_GUARDED_BY(mutex_);  // of those that can be discovered
 
-  std::unique_ptr<Reader> reader_;
-  std::unique_ptr<Timer> timer_;
+  std::unique_ptr<ros2::Reader> reader_;
+  std::unique_ptr<ros2::Timer> timer_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

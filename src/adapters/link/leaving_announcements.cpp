@@ -4,7 +4,7 @@
 
 #include "base/live_clock.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 // A node that was announced to leave, and answered.
@@ -12,7 +12,8 @@ constexpr auto kLeavingAskedAgain = std::chrono::seconds(2);
 
 }  // namespace
 
-LeavingAnnouncements::LeavingAnnouncements(Executor& executor, Inbox& inbox, Ask ask, Left left)
+LeavingAnnouncements::LeavingAnnouncements(ros2::Executor& executor, Inbox& inbox, Ask ask,
+                                           Left left)
     : inbox_(inbox), ask_(std::move(ask)), left_(std::move(left)), tasks_(executor) {}
 
 void LeavingAnnouncements::is_back(const std::string& node) {
@@ -20,7 +21,7 @@ void LeavingAnnouncements::is_back(const std::string& node) {
   unproven_.erase(node);
 }
 
-void LeavingAnnouncements::joined(const GraphNode& node) {
+void LeavingAnnouncements::joined(const ros2::GraphNode& node) {
   if (node.pid == 0) unproven_[node.name] = {node.vendor, node.participant};
 }
 
@@ -33,10 +34,10 @@ void LeavingAnnouncements::left(const std::string& node, bool was_lost) {
 void LeavingAnnouncements::doubt(const std::string& node, Leaving leaving) {
   constexpr auto kOfFastDds = std::chrono::seconds(4);
   constexpr auto kOfOthers = std::chrono::seconds(9);
-  const auto patience = leaving.node.vendor == Vendor::kFastDds ? kOfFastDds : kOfOthers;
+  const auto patience = leaving.node.vendor == ros2::Vendor::kFastDds ? kOfFastDds : kOfOthers;
   leaving.doubt = ++doubts_;
   leaving_[node] = leaving;
-  tasks_.post_at(Executor::Clock::now() + patience,
+  tasks_.post_at(ros2::Executor::Clock::now() + patience,
                  [this, node, doubt = leaving.doubt] { ask_leaving(node, doubt); });
 }
 
@@ -45,12 +46,13 @@ void LeavingAnnouncements::doubt(const std::string& node, Leaving leaving) {
 void LeavingAnnouncements::ask_leaving(const std::string& node, std::uint64_t doubt) {
   const auto found = leaving_.find(node);
   if (found == leaving_.end() || found->second.doubt != doubt) return;
-  ask_(node, [this, node, doubt](std::optional<GuidPrefix> answered) {
+  ask_(node, [this, node, doubt](std::optional<rtps::GuidPrefix> answered) {
     tasks_.post([this, node, doubt, answered] { believe(node, answered, doubt); });
   });
 }
 
-void LeavingAnnouncements::believe(const std::string& node, std::optional<GuidPrefix> answered,
+void LeavingAnnouncements::believe(const std::string& node,
+                                   std::optional<rtps::GuidPrefix> answered,
                                    std::uint64_t doubt_asked) {
   const auto found = leaving_.find(node);
   if (found == leaving_.end() || found->second.doubt != doubt_asked) return;
@@ -78,7 +80,7 @@ void LeavingAnnouncements::ask_again(const std::string& node) {
 }
 
 void LeavingAnnouncements::ask_whether_left(const std::string& node, int questions) {
-  ask_(node, [this, node, questions](std::optional<GuidPrefix> answered) {
+  ask_(node, [this, node, questions](std::optional<rtps::GuidPrefix> answered) {
     tasks_.post([this, node, questions, answers = answered.has_value()] {
       on_whether_left(node, questions, answers);
     });
@@ -92,7 +94,8 @@ void LeavingAnnouncements::on_whether_left(const std::string& node, int question
     asked_whether_left_.erase(node);
     return context_->believe_left(node);
   }
-  tasks_.post_at(Executor::Clock::now() + kLeavingAskedAgain, [this, node] { ask_again(node); });
+  tasks_.post_at(ros2::Executor::Clock::now() + kLeavingAskedAgain,
+                 [this, node] { ask_again(node); });
   if (told_of_false_leaving_.size() >= kMost || !told_of_false_leaving_.insert(node).second) return;
   inbox_.put(LinkTrouble{"a message in the name of " + node +
                          " announced that it left the graph, but it answers and counts as "
@@ -112,4 +115,4 @@ bool LeavingAnnouncements::is_doubted(ComponentId component, const std::string& 
   return expected == expected_.end() || expected->second < live_now();
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

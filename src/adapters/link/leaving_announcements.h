@@ -26,25 +26,25 @@
 #include "ros2/executor.h"
 #include "ros2/graph.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // On the executor's thread, but for expect(), which any thread may call.
 class LeavingAnnouncements {
  public:
   // Asks whether the node is there, and gives the participant that answered, if any does. `then` may be called on
   // any thread, and before this returns.
-  using Then = std::function<void(std::optional<GuidPrefix> answered)>;
+  using Then = std::function<void(std::optional<rtps::GuidPrefix> answered)>;
   using Ask = std::function<void(const std::string& node, Then then)>;
   // The node has left.
   using Left = std::function<void(const std::string& node, bool was_lost)>;
 
   // `executor` and `inbox` outlive it.
-  LeavingAnnouncements(Executor& executor, Inbox& inbox, Ask ask, Left left);
+  LeavingAnnouncements(ros2::Executor& executor, Inbox& inbox, Ask ask, Left left);
   // Before the first node joins. It outlives the last call.
-  void watch(Context& context) { context_ = &context; }
+  void watch(ros2::Context& context) { context_ = &context; }
 
   // A component's node joined the graph.
-  void joined(const GraphNode& node);
+  void joined(const ros2::GraphNode& node);
   // Any node: it is there again.
   void is_back(const std::string& node);
   // A node left the graph.
@@ -60,8 +60,8 @@ class LeavingAnnouncements {
  private:
   // Nodes whose process is not known, and the participant that has each.
   struct Unproven {
-    Vendor vendor = Vendor::kOther;
-    GuidPrefix participant{};
+    ros2::Vendor vendor = ros2::Vendor::kOther;
+    rtps::GuidPrefix participant{};
   };
   struct Leaving {
     Unproven node;
@@ -72,7 +72,8 @@ class LeavingAnnouncements {
 
   void doubt(const std::string& node, Leaving leaving);
   void ask_leaving(const std::string& node, std::uint64_t doubt);
-  void believe(const std::string& node, std::optional<GuidPrefix> answered, std::uint64_t doubt);
+  void believe(const std::string& node, std::optional<rtps::GuidPrefix> answered,
+               std::uint64_t doubt);
   void ask_again(const std::string& node);
   void ask_whether_left(const std::string& node, int questions);
   void on_whether_left(const std::string& node, int questions, bool answers);
@@ -80,7 +81,7 @@ class LeavingAnnouncements {
   Inbox& inbox_;
   const Ask ask_;
   const Left left_;
-  Context* context_ = nullptr;
+  ros2::Context* context_ = nullptr;
 
   std::map<std::string, Unproven> unproven_;  // by node
   std::map<std::string, Leaving> leaving_;    // such nodes that are announced to have left
@@ -90,7 +91,7 @@ class LeavingAnnouncements {
 
   mutable Mutex mutex_;
   std::map<ComponentId, Time> expected_ CULPRIT_GUARDED_BY(mutex_);  // until then
-  TaskGroup tasks_;
+  ros2::TaskGroup tasks_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

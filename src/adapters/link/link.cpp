@@ -14,7 +14,7 @@
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 constexpr Duration kProbePeriod = std::chrono::milliseconds(400);
@@ -90,7 +90,7 @@ Link::~Link() {
 Expected<void> Link::start() {
   if (auto joined = join(); !joined) return joined;
   if (auto watched = watch(); !watched) return watched;
-  auto hearing = Hearing::begin(context_->participant(), executor_);
+  auto hearing = ros2::Hearing::begin(context_->participant(), executor_);
   if (!hearing) return Error{hearing.error()};
   hearing_ = std::move(*hearing);
   if (options_.lease) {
@@ -98,7 +98,7 @@ Expected<void> Link::start() {
     if (!lease) return Error{lease.error()};
     lease_ = std::move(*lease);
   }
-  publishing_ = std::make_unique<Timer>(executor_, kPublishPeriod, [this] {
+  publishing_ = std::make_unique<ros2::Timer>(executor_, kPublishPeriod, [this] {
     publish_again();
     datagrams_->tell(live_now());
     remind();
@@ -107,18 +107,19 @@ Expected<void> Link::start() {
     tell_usage();
     time_->report();
   });
-  probing_ = std::make_unique<Timer>(executor_, kProbePeriod, [this] { probe(); });
+  probing_ = std::make_unique<ros2::Timer>(executor_, kProbePeriod, [this] { probe(); });
   thread_ = std::thread([this] { executor_.run(); });
   return {};
 }
 
-Graph::Options Link::graph_options() {
-  Graph::Options graph;
-  graph.listener = [this](const GraphChange& change) { on_change(change); };
-  graph.find_process = [this, finder = ProcessFinder()](const ParticipantInfo& participant) {
+ros2::Graph::Options Link::graph_options() {
+  ros2::Graph::Options graph;
+  graph.listener = [this](const ros2::GraphChange& change) { on_change(change); };
+  graph.find_process = [this,
+                        finder = ros2::ProcessFinder()](const ros2::ParticipantInfo& participant) {
     return options_.participant.helper ? find_named(participant) : finder.find(participant);
   };
-  graph.is_running = [finder = ProcessFinder()](int pid) { return finder.is_running(pid); };
+  graph.is_running = [finder = ros2::ProcessFinder()](int pid) { return finder.is_running(pid); };
   graph.is_ended_by_others = [this](const std::string& node) {
     const auto component = binding_.bind(node);
     return component && rules_[*component].has_owner();
@@ -140,7 +141,7 @@ Graph::Options Link::graph_options() {
 // As a node of the domain.
 Expected<void> Link::join() {
   if (options_.participant.helper) {
-    auto helper = std::make_shared<HelperOptions>(*options_.participant.helper);
+    auto helper = std::make_shared<ros2::HelperOptions>(*options_.participant.helper);
     helper->name_space = options_.name.name_space;
     helper->name = options_.name.name;
     helper->on_trouble = [this](std::string text) { inbox_.put(LinkTrouble{std::move(text)}); };
@@ -152,26 +153,26 @@ Expected<void> Link::join() {
         LinkTrouble{why + "; culprit goes without it. Correct ROS_STATIC_PEERS, or restart culprit "
                           "once that computer is reachable"});
   };
-  auto context = Context::create(executor_, options_.participant, graph_options());
+  auto context = ros2::Context::create(executor_, options_.participant, graph_options());
   if (!context) return Error{context.error()};
   context_ = std::move(*context);
   context_->participant().on_round([this] { inbox_.hand_over(); });
   datagrams_.emplace(*context_, inbox_, options_.participant.helper != nullptr);
-  context_->on_discovery([this](const DiscoveryEvent& event) { on_discovery(event); });
+  context_->on_discovery([this](const ros2::DiscoveryEvent& event) { on_discovery(event); });
   leaving_.watch(*context_);
   hosts_ = std::make_unique<ComponentHosts>(
-      [this](const GuidPrefix& participant) {
+      [this](const rtps::GuidPrefix& participant) {
         return context_->participant().heard_last(participant);
       },
       inbox_);
-  auto node = Node::create(*context_, options_.name);
+  auto node = ros2::Node::create(*context_, options_.name);
   if (!node) return Error{node.error()};
   node_ = std::move(*node);
   types_ = std::make_unique<TypeFinder>(*node_, options_.types);
   other_nodes_ = std::make_unique<OtherNodes>(node_->entry(), binding_, inbox_);
   listening_ = std::make_unique<ListeningProof>(node_->entry(), executor_, inbox_,
                                                 [this] { return silent_topics(); });
-  auto publisher = node_->create_publisher<msg::DiagnosticArray>("/diagnostics");
+  auto publisher = node_->create_publisher<ros2::msg::DiagnosticArray>("/diagnostics");
   if (!publisher) return Error{publisher.error()};
   diagnostics_.emplace(std::move(*publisher));
   return declare_parameters();
@@ -210,7 +211,7 @@ Expected<void> Link::watch() {
 }
 
 // Within a change of the graph.
-FoundProcess Link::find_named(const ParticipantInfo& participant) const {
+ros2::FoundProcess Link::find_named(const ros2::ParticipantInfo& participant) const {
   if (!participant.host.empty() && participant.host != host_name()) return {};
   std::vector<NamedProcess::Sought> nodes;
   for (const std::string& node : participant.nodes) {
@@ -252,7 +253,7 @@ std::string Link::doubt() const {
 
 Expected<void> Link::declare_parameters() {
   for (const auto& [name, value] : options_.parameters) {
-    msg::ParameterDescriptor descriptor;
+    ros2::msg::ParameterDescriptor descriptor;
     descriptor.read_only = true;
     if (auto declared = node_->parameters().declare(name, value, descriptor); !declared)
       return declared;
@@ -264,7 +265,7 @@ Expected<void> Link::declare_parameters() {
 // all that changes within a while.
 void Link::give_memory_back_soon() {
   if (std::exchange(gives_memory_back_, true)) return;
-  tasks_.post_at(Executor::Clock::now() + kGivesBack, [this] {
+  tasks_.post_at(ros2::Executor::Clock::now() + kGivesBack, [this] {
     gives_memory_back_ = false;
     malloc_trim(0);
   });
@@ -272,31 +273,31 @@ void Link::give_memory_back_soon() {
 
 // ---- observations
 
-void Link::on_change(const GraphChange& change) {
+void Link::on_change(const ros2::GraphChange& change) {
   give_memory_back_soon();
-  if (const auto* joined = std::get_if<NodeJoined>(&change)) {
+  if (const auto* joined = std::get_if<ros2::NodeJoined>(&change)) {
     on_joined(joined->node);
-  } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
+  } else if (const auto* left = std::get_if<ros2::NodeLeft>(&change)) {
     on_left(left->node, left->was_lost);
-  } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
+  } else if (const auto* endpoint = std::get_if<ros2::EndpointJoined>(&change)) {
     on_endpoint(endpoint->node, endpoint->endpoint);
-  } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
+  } else if (const auto* gone = std::get_if<ros2::EndpointLeft>(&change)) {
     if (gone->kind == EndpointKind::kSubscriber) on_subscription(gone->node, gone->name);
     if (is_service(gone->kind) && is_for_management(gone->name)) return;
     inbox_.put(EndpointVanished{gone->node, gone->kind, gone->name});
-  } else if (const auto* namesakes = std::get_if<NodeNamesakes>(&change)) {
+  } else if (const auto* namesakes = std::get_if<ros2::NodeNamesakes>(&change)) {
     // Before anybody acts on it. Rules may have nothing to complain of, or complain late: this is
     // reported in its own right.
     contests_.seen(*namesakes, is_ours(namesakes->node), live_now());
     inbox_.put(NamesakesSeen{namesakes->node, namesakes->others});
-  } else if (const auto* doubted = std::get_if<NodeSaidToLeave>(&change)) {
+  } else if (const auto* doubted = std::get_if<ros2::NodeSaidToLeave>(&change)) {
     leaving_.said_to_leave(doubted->node);
-  } else if (const auto* trouble = std::get_if<GraphTrouble>(&change)) {
+  } else if (const auto* trouble = std::get_if<ros2::GraphTrouble>(&change)) {
     inbox_.put(LinkTrouble{trouble->text});
   }
 }
 
-void Link::on_discovery(const DiscoveryEvent& event) {
+void Link::on_discovery(const ros2::DiscoveryEvent& event) {
   hosts_->on_discovery(event);
   if (lease_) lease_->on_discovery(event);
 }
@@ -336,7 +337,7 @@ void Link::remind() {
   if (auto text = namesake_.due(now)) inbox_.put(LinkTrouble{std::move(*text)});
 }
 
-void Link::on_joined(const GraphNode& node) {
+void Link::on_joined(const ros2::GraphNode& node) {
   const std::string host = node.pid == 0 ? printable(node.host) : "";
   hosts_->node_joined(node.name, host);
   inbox_.put(NodeAppeared{node.name, node.pid});
@@ -391,11 +392,11 @@ void Link::remember_publishers(const std::map<std::string, std::string>& publish
 // A system of system_modes is no node: its mode manager offers its services, and it is there as
 // long as the manager is. It offers the same for nodes that have modes, which are there by
 // themselves.
-void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
+void Link::on_system(const std::string& manager, const ros2::GraphEndpoint& service) {
   const std::string system = service.name.substr(0, service.name.rfind('/'));
   const auto component = binding_.bind(system);
   if (system == manager || !component || rules_[*component].node != system) return;
-  const Graph& graph = context_->graph();
+  const ros2::Graph& graph = context_->graph();
   if (!mode_managers_.may_tell(manager, system, graph)) return;
   if (!graph.node(system)) {
     mode_managers_.represents(manager, system);
@@ -406,7 +407,7 @@ void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
   link->service_seen(service);
 }
 
-void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
+void Link::on_endpoint(const std::string& node, const ros2::GraphEndpoint& endpoint) {
   if (endpoint.kind == EndpointKind::kServer) {
     const auto component = binding_.bind(node);
     const bool is_main = component && !other_nodes_->has(*component, node);
@@ -424,7 +425,7 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
         });
       });
     }
-    if (endpoint.type == srv::ChangeMode::kType) on_system(node, endpoint);
+    if (endpoint.type == ros2::srv::ChangeMode::kType) on_system(node, endpoint);
   }
   if (endpoint.kind == EndpointKind::kSubscriber) on_subscription(node, endpoint.name);
   if (endpoint.kind == EndpointKind::kPublisher) {
@@ -445,7 +446,7 @@ void Link::on_subscription(const std::string& node, const std::string& topic) {
 
 void Link::tell_writers(const std::string& topic) {
   TopicWatch::Writers writers;
-  const Graph& graph = context_->graph();
+  const ros2::Graph& graph = context_->graph();
   for (const auto& [writer, node] : graph.publishers_of(topic)) {
     const auto component = binding_.bind(node);
     // Anybody can claim to be that node.
@@ -454,17 +455,18 @@ void Link::tell_writers(const std::string& topic) {
   watches_.at(topic)->knows_writers(std::move(writers));
 }
 
-void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch) {
+void Link::find_type(const std::string& node, const ros2::GraphEndpoint& endpoint,
+                     TopicWatch& watch) {
   if (!watch.reads_fields()) return watch.publisher_seen(endpoint.type, endpoint.qos, nullptr);
-  types_->find(
-      {node, endpoint.type, endpoint.type_hash, context_->graph().process_of(node)},
-      [&watch, type = endpoint.type, qos = endpoint.qos](const Expected<MessageLibrary*>& library) {
-        watch.publisher_seen(type, qos, library);
-      });
+  types_->find({node, endpoint.type, endpoint.type_hash, context_->graph().process_of(node)},
+               [&watch, type = endpoint.type,
+                qos = endpoint.qos](const Expected<ros2::MessageLibrary*>& library) {
+                 watch.publisher_seen(type, qos, library);
+               });
 }
 
-GuidPrefix Link::participant_of(const std::string& node) const {
-  return context_->graph().node(node).value_or(GraphNode{}).participant;
+rtps::GuidPrefix Link::participant_of(const std::string& node) const {
+  return context_->graph().node(node).value_or(ros2::GraphNode{}).participant;
 }
 
 void Link::probe() {
@@ -523,7 +525,7 @@ void Link::tell_usage() {
 std::vector<ListeningProof::Silent> Link::silent_topics() const {
   std::vector<ListeningProof::Silent> silent;
   for (const auto& [name, watch] : watches_) {
-    const Graph::Publishers& publishers = context_->graph().nodes_publishing(name);
+    const ros2::Graph::Publishers& publishers = context_->graph().nodes_publishing(name);
     if (publishers.size() != 1 || watch->has_heard() || !watch->is_listening()) continue;
     const std::string& node = publishers.begin()->first;
     silent.push_back({watch->topic(), node, participant_of(node)});
@@ -571,12 +573,12 @@ void Link::publish(std::vector<Health> health) {
 }
 
 void Link::publish_again() {
-  msg::DiagnosticArray message;
-  message.header.stamp = msg::to_time(std::chrono::system_clock::now());
+  ros2::msg::DiagnosticArray message;
+  message.header.stamp = ros2::msg::to_time(std::chrono::system_clock::now());
   {
     const MutexLock lock(mutex_);
     for (const Health& h : health_) {
-      msg::DiagnosticStatus status{h.level, h.name, h.message, kCulpritsHardwareId, {}};
+      ros2::msg::DiagnosticStatus status{h.level, h.name, h.message, kCulpritsHardwareId, {}};
       for (const auto& [key, value] : h.values) status.values.push_back({key, value});
       message.status.push_back(std::move(status));
     }
@@ -593,6 +595,6 @@ void Link::publish_again() {
   if (!message.status.empty()) diagnostics_->publish(message);
 }
 
-void Link::log(Severity severity, std::string text) { node_->log(severity, std::move(text)); }
+void Link::log(ros2::Severity severity, std::string text) { node_->log(severity, std::move(text)); }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -46,7 +46,7 @@
 #include "ros2/node.h"
 #include "ros2/timer.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // One status on /diagnostics. `level` as in diagnostic_msgs: 0 OK, 1 WARN, 2 ERROR.
 struct Health {
@@ -61,8 +61,8 @@ struct Health {
 class Link {
  public:
   struct Options {
-    ParticipantOptions participant;
-    NodeName name{"/", "culprit"};
+    ros2::ParticipantOptions participant;
+    ros2::NodeName name{"/", "culprit"};
     TypeFinder::Options types{};
     std::vector<std::pair<std::string, Value>>
         parameters;  // what the node shows of itself, read-only
@@ -82,7 +82,7 @@ class Link {
   void execute(const Command& command);
   // Publishes at once, and again every second until there is something new to publish.
   void publish(std::vector<Health> health);
-  void log(Severity severity, std::string text);
+  void log(ros2::Severity severity, std::string text);
 
   // For each component's and container's node whose name others have too, by full name: the text for a
   // person. From any thread.
@@ -109,7 +109,7 @@ class Link {
   void remember_publishers(const std::map<std::string, std::string>& publishers);
 
   // Our own node, for clients of nodes that are no component. It goes with the link.
-  NodeEntry& entry() { return node_->entry(); }
+  ros2::NodeEntry& entry() { return node_->entry(); }
 
   // Until when it is certain that the robot's messages arrive (hearing.h), that no other culprit
   // manages it (lease_link.h), and that its time passes (robot_time.h). From any thread, as
@@ -136,24 +136,24 @@ class Link {
   Expected<void> start();
   Expected<void> join();
   Expected<void> watch();
-  Graph::Options graph_options();
-  FoundProcess find_named(const ParticipantInfo& participant) const;
+  ros2::Graph::Options graph_options();
+  ros2::FoundProcess find_named(const ros2::ParticipantInfo& participant) const;
   Expected<void> declare_parameters();
 
-  void on_change(const GraphChange& change);
+  void on_change(const ros2::GraphChange& change);
   void give_memory_back_soon();
-  void on_joined(const GraphNode& node);
+  void on_joined(const ros2::GraphNode& node);
   void on_left(const std::string& node, bool was_lost);
   void ask(const std::string& node, LeavingAnnouncements::Then then);
   void vanished(const std::string& node, bool was_lost);
   bool is_ours(const std::string& node);
-  GuidPrefix participant_of(const std::string& node) const;
-  void on_system(const std::string& manager, const GraphEndpoint& service);
-  void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
+  rtps::GuidPrefix participant_of(const std::string& node) const;
+  void on_system(const std::string& manager, const ros2::GraphEndpoint& service);
+  void on_endpoint(const std::string& node, const ros2::GraphEndpoint& endpoint);
   void on_subscription(const std::string& node, const std::string& topic);
   void tell_writers(const std::string& topic);
-  void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
-  void on_discovery(const DiscoveryEvent& event);
+  void find_type(const std::string& node, const ros2::GraphEndpoint& endpoint, TopicWatch& watch);
+  void on_discovery(const ros2::DiscoveryEvent& event);
   void listen_to_hosts();
   void look_at_hosts();
 
@@ -172,11 +172,11 @@ class Link {
   Inbox& inbox_;
   ComponentBinding binding_;
 
-  Executor executor_;
-  std::unique_ptr<Context> context_;
+  ros2::Executor executor_;
+  std::unique_ptr<ros2::Context> context_;
   std::optional<DatagramTroubles> datagrams_;
-  std::unique_ptr<Node> node_;
-  std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
+  std::unique_ptr<ros2::Node> node_;
+  std::optional<ros2::Publisher<ros2::msg::DiagnosticArray>> diagnostics_;
   std::map<std::string, std::unique_ptr<TopicWatch>> watches_;  // by topic
   std::unique_ptr<TypeFinder> types_;
   std::unique_ptr<RobotTime> time_;
@@ -197,9 +197,9 @@ class Link {
   std::optional<Time> probed_last_;
   ModeManagers mode_managers_{inbox_};
   std::unique_ptr<ListeningProof> listening_;
-  std::unique_ptr<Timer> probing_;
-  std::unique_ptr<Timer> publishing_;
-  std::unique_ptr<Hearing> hearing_;
+  std::unique_ptr<ros2::Timer> probing_;
+  std::unique_ptr<ros2::Timer> publishing_;
+  std::unique_ptr<ros2::Hearing> hearing_;
   std::unique_ptr<LeaseLink> lease_;
   std::unique_ptr<ComponentHosts> hosts_;
   Time looked_at_hosts_ = kLongAgo;  // on the executor's thread
@@ -211,9 +211,9 @@ class Link {
       CULPRIT_GUARDED_BY(mutex_);  // by component; one that is made stays
 
   // Work of other threads for the executor's.
-  TaskGroup tasks_{executor_};
+  ros2::TaskGroup tasks_{executor_};
 
   std::thread thread_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

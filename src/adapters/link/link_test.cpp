@@ -33,7 +33,7 @@
 #include "rtps/newcomers.h"
 #include "rtps/test_hostile_process.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
@@ -53,9 +53,9 @@ RULE R
 )";
 
 // A helper program of --link ros for this domain. It adds its process id to the file, if one is named.
-std::shared_ptr<const HelperOptions> helper_of(const TestDomain& domain,
-                                               const std::string& pids = "/dev/null") {
-  HelperOptions helper;
+std::shared_ptr<const ros2::HelperOptions> helper_of(const ros2::TestDomain& domain,
+                                                     const std::string& pids = "/dev/null") {
+  ros2::HelperOptions helper;
   helper.command = {"/bin/sh",
                     "-c",
                     "echo $$ >> \"$0\"; exec \"$@\"",
@@ -63,7 +63,7 @@ std::shared_ptr<const HelperOptions> helper_of(const TestDomain& domain,
                     CULPRIT_PEER_HELPER,
                     std::to_string(domain.number())};
   for (char** each = environ; *each != nullptr; ++each) helper.environment.emplace_back(*each);
-  return std::make_shared<const HelperOptions>(std::move(helper));
+  return std::make_shared<const ros2::HelperOptions>(std::move(helper));
 }
 
 // The variable runs the tests that are not of DDS alone over a helper (src/CMakeLists.txt).
@@ -72,8 +72,9 @@ bool is_over_helper() { return environment("CULPRIT_LINK_OF_TESTS") == "ros"; }
 // A link to whatever the test puts on the domain, and what it observes.
 class Linked {
  public:
-  explicit Linked(const TestDomain& domain, const std::filesystem::path& message_path = {},
-                  const char* text = kRules, std::shared_ptr<const HelperOptions> helper = nullptr)
+  explicit Linked(const ros2::TestDomain& domain, const std::filesystem::path& message_path = {},
+                  const char* text = kRules,
+                  std::shared_ptr<const ros2::HelperOptions> helper = nullptr)
       : rules(*check(Source("test.rules", text)).rules) {
     Link::Options options;
     if (!message_path.empty()) options.types.message_path = {message_path};
@@ -88,7 +89,7 @@ class Linked {
 
   // The first observation of this kind that fits, now or later.
   template <class What, class Fits>
-  std::optional<What> wait(Fits fits, Duration patience = kPatience) {
+  std::optional<What> wait(Fits fits, Duration patience = rtps::kPatience) {
     const Time end = live_now() + patience;
     for (std::size_t i = 0;; ++i) {
       while (i == seen_.size()) {
@@ -137,29 +138,29 @@ class Linked {
 };
 
 struct Robot {
-  explicit Robot(const TestDomain& domain) : context(domain.options()) {
+  explicit Robot(const ros2::TestDomain& domain) : context(domain.options()) {
     context.run([&] {
-      managed = std::move(*LifecycleNode::create(*context, {"/", "robot"}, {}));
-      ParameterStore& parameters = managed->node().parameters();
+      managed = std::move(*ros2::LifecycleNode::create(*context, {"/", "robot"}, {}));
+      ros2::ParameterStore& parameters = managed->node().parameters();
       EXPECT_TRUE(parameters.declare("gain", Value(1.5)));
-      msg::ParameterValue names;
+      ros2::msg::ParameterValue names;
       names.type = 9;
       EXPECT_TRUE(parameters.declare("names", names));
     });
   }
   template <class Message>
-  Publisher<Message> publisher(const std::string& topic) {
+  ros2::Publisher<Message> publisher(const std::string& topic) {
     return std::move(*managed->node().create_publisher<Message>(topic));
   }
-  LiveContext context;
-  std::unique_ptr<LifecycleNode> managed;
+  ros2::LiveContext context;
+  std::unique_ptr<ros2::LifecycleNode> managed;
 };
 
 // It announces the port of no process, so its process is unknown.
 TEST(Link, ANodeThatAnUnknownSourceDeclaredGoneHasTimeToComeBack) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Linked linked(domain);
-  Forger robot(domain.options(), free_port());
+  ros2::Forger robot(domain.options(), ros2::free_port());
   robot.says_that_it_holds({"/", "robot", {}, {}});
   ASSERT_TRUE(linked.sees("/robot"));
   const auto left = [](const NodeVanished& n) { return n.node == "/robot"; };
@@ -175,7 +176,7 @@ TEST(Link, ANodeThatAnUnknownSourceDeclaredGoneHasTimeToComeBack) {
 }
 
 TEST(Link, SeesNodesWithTheirProcessAndTheirState) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   Linked linked(domain);
   const auto node =
@@ -190,16 +191,16 @@ TEST(Link, SeesNodesWithTheirProcessAndTheirState) {
 
 // As a simulation that begins paused.
 TEST(Link, HoldsASimulatedNodeUntilItsClockTicks) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  const msg::Parameter simulated{"use_sim_time", to_parameter_value(true)};
-  std::unique_ptr<LifecycleNode> simulator;
+  const ros2::msg::Parameter simulated{"use_sim_time", ros2::to_parameter_value(true)};
+  std::unique_ptr<ros2::LifecycleNode> simulator;
   robot.context.run([&] {
     ASSERT_TRUE(robot.managed->node().parameters().set({&simulated, 1}).successful);
-    simulator = std::move(*LifecycleNode::create(*robot.context, {"/", "simulator"}, {}));
+    simulator = std::move(*ros2::LifecycleNode::create(*robot.context, {"/", "simulator"}, {}));
   });
-  auto clock = std::move(
-      *RawPublisher::create(simulator->node().entry(), "/clock", "rosgraph_msgs/msg/Clock", {}));
+  auto clock = std::move(*ros2::RawPublisher::create(simulator->node().entry(), "/clock",
+                                                     "rosgraph_msgs/msg/Clock", {}));
   Linked linked(domain);
   const auto is_held = [&](bool held) {
     return linked.wait<TimeHeld>([&](const TimeHeld& t) { return t.is_held == held; }).has_value();
@@ -208,8 +209,8 @@ TEST(Link, HoldsASimulatedNodeUntilItsClockTicks) {
   EXPECT_FALSE(linked.has_seen<TimeHeld>([](const TimeHeld& t) { return !t.is_held; }));
 
   std::int32_t shown = 0;
-  auto ticking = std::make_unique<Timer>(robot.context->executor(), 20ms, [&] {
-    clock->publish(encode(msg::Time{++shown, 0}));
+  auto ticking = std::make_unique<ros2::Timer>(robot.context->executor(), 20ms, [&] {
+    clock->publish(rtps::encode(ros2::msg::Time{++shown, 0}));
   });
   EXPECT_TRUE(is_held(false));
   robot.context.run([&] { ticking.reset(); });
@@ -218,7 +219,7 @@ TEST(Link, HoldsASimulatedNodeUntilItsClockTicks) {
 }
 
 TEST(Link, AsksLocalNodesTooWhetherTheyAnswer) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   Linked linked(domain, {},
                 "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR\nTRIGGER !alive(robot)\n"
@@ -236,27 +237,28 @@ TEST(Link, AsksLocalNodesTooWhetherTheyAnswer) {
 
 // An event is a reason to ask. Anybody may send one, in the name of whomever he likes.
 TEST(Link, BelievesNoTransitionEventButTheNodesOwnAnswer) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  LiveContext stranger(domain.options());
-  NodeEntry liar(*stranger, {"/", "liar"});
+  ros2::LiveContext stranger(domain.options());
+  ros2::NodeEntry liar(*stranger, {"/", "liar"});
   Linked linked(domain);
-  const auto reads = [&](Lifecycle expected, Duration patience = kPatience) {
+  const auto reads = [&](Lifecycle expected, Duration patience = rtps::kPatience) {
     return linked
         .wait<LifecycleRead>([&](const LifecycleRead& r) { return r.state == expected; }, patience)
         .has_value();
   };
   ASSERT_TRUE(reads(Lifecycle::kUnconfigured));
-  const auto forged =
-      RawPublisher::create(liar, "/robot/transition_event", msg::TransitionEvent::kType, {});
+  const auto forged = ros2::RawPublisher::create(liar, "/robot/transition_event",
+                                                 ros2::msg::TransitionEvent::kType, {});
   // As its own would be, if another program uses its participant's identity.
-  const auto own = RawPublisher::create(robot.managed->node().entry(), "/robot/transition_event",
-                                        msg::TransitionEvent::kType, {});
+  const auto own =
+      ros2::RawPublisher::create(robot.managed->node().entry(), "/robot/transition_event",
+                                 ros2::msg::TransitionEvent::kType, {});
   ASSERT_TRUE(forged && own);
   for (const LifecycleState state : {LifecycleState::kActive, LifecycleState::kErrorProcessing}) {
-    msg::TransitionEvent event;
+    ros2::msg::TransitionEvent event;
     event.goal_state.id = static_cast<std::uint8_t>(state);
-    const Bytes bytes = encode(event);
+    const rtps::Bytes bytes = rtps::encode(event);
     for (int i = 0; i < 20; ++i) {
       (*forged)->publish(bytes);
       (*own)->publish(bytes);
@@ -280,20 +282,20 @@ auto tells(const std::string& part) {
 
 // Any program that uses its participant's identity can do that.
 TEST(Link, AsksANodeThatIsSaidToLeave) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   Linked linked(domain, {}, kAliveRules);
   ASSERT_TRUE(linked.sees("/robot"));
   ASSERT_TRUE(linked.wait<Probed>([](const Probed& p) { return p.answered; }));
   const auto forged =
-      robot.context->participant().create_writer({.topic = std::string(kDiscoveryInfoTopic),
-                                                  .type = std::string(kDiscoveryInfoType),
-                                                  .qos = qos::kDiscoveryInfoWriter,
+      robot.context->participant().create_writer({.topic = std::string(ros2::kDiscoveryInfoTopic),
+                                                  .type = std::string(ros2::kDiscoveryInfoType),
+                                                  .qos = rtps::qos::kDiscoveryInfoWriter,
                                                   .user_data = {},
                                                   .on_match = {}});
   ASSERT_TRUE(forged);
-  (*forged)->write(
-      encode_discovery_info({robot.context->participant().guid(), {}}, GidSize::kHumbleAndOlder));
+  (*forged)->write(ros2::encode_discovery_info({robot.context->participant().guid(), {}},
+                                               ros2::GidSize::kHumbleAndOlder));
   const auto leaves = [](const NodeVanished& n) { return n.node == "/robot"; };
   EXPECT_TRUE(linked.wait<LinkTrouble>(tells("but it answers and counts as present")));
   EXPECT_FALSE(linked.wait<NodeVanished>(leaves, 500ms));
@@ -305,11 +307,11 @@ TEST(Link, AsksANodeThatIsSaidToLeave) {
 }
 
 TEST(Link, ANameThatWasProvenHereBelongsToNoStranger) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   std::optional<Robot> robot(std::in_place, domain);
   Linked linked(domain, {}, kAliveRules);
   ASSERT_TRUE(linked.wait<NodeAppeared>([](const NodeAppeared& n) { return n.pid == getpid(); }));
-  Forger stranger(domain.options(), free_port());
+  ros2::Forger stranger(domain.options(), ros2::free_port());
   stranger.says_that_it_holds({"/", "robot", {}, {}});
   EXPECT_TRUE(linked.wait<LinkTrouble>(tells("claims the name /robot")));
   robot.reset();
@@ -321,25 +323,25 @@ TEST(Link, ANameThatWasProvenHereBelongsToNoStranger) {
 }
 
 TEST(Link, ReadsAStatusOnlyOfItsPublisher) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  LiveContext other(domain.options());
-  NodeEntry liar(*other, {"/", "liar"});
-  auto own = robot.publisher<msg::DiagnosticArray>("/diagnostics");
-  auto forged = Publisher<msg::DiagnosticArray>(std::move(
-      *RawPublisher::create(liar, "/diagnostics", msg::DiagnosticArray::kType, qos::kDefault)));
+  ros2::LiveContext other(domain.options());
+  ros2::NodeEntry liar(*other, {"/", "liar"});
+  auto own = robot.publisher<ros2::msg::DiagnosticArray>("/diagnostics");
+  auto forged = ros2::Publisher<ros2::msg::DiagnosticArray>(std::move(*ros2::RawPublisher::create(
+      liar, "/diagnostics", ros2::msg::DiagnosticArray::kType, rtps::qos::kDefault)));
   const auto temperature = [](const std::string& text) {
-    msg::DiagnosticArray array;
+    ros2::msg::DiagnosticArray array;
     array.status = {{1, "motor", "", "m1", {{"temperature", text}}}};
     return array;
   };
   Linked linked(domain);
   ASSERT_TRUE(linked.sees("/robot"));
-  Timer speaks(robot.context->executor(), 20ms, [&] { own.publish(temperature("40")); });
+  ros2::Timer speaks(robot.context->executor(), 20ms, [&] { own.publish(temperature("40")); });
   EXPECT_EQ(linked.reads("temperature"), Value(std::string("40")));
   EXPECT_TRUE(linked.wait<PublisherKnown>(
       [](const PublisherKnown& p) { return p.status == "motor" && p.node == "/robot"; }));
-  Timer lies(other->executor(), 20ms, [&] { forged.publish(temperature("90")); });
+  ros2::Timer lies(other->executor(), 20ms, [&] { forged.publish(temperature("90")); });
   EXPECT_TRUE(linked.wait<LinkTrouble>(
       tells("status motor is published by /robot, and by /liar, too: culprit ignores /liar")));
   EXPECT_FALSE(linked.wait<SignalRead>(
@@ -348,21 +350,22 @@ TEST(Link, ReadsAStatusOnlyOfItsPublisher) {
 
 // The liar comes first, publishes more often, and latches.
 TEST(Link, ReadsASignalOnlyOfThePublisherThatIsDeclared) {
-  const TestDomain domain;
-  LiveContext other(domain.options());
-  NodeEntry liar(*other, {"/", "liar"});
-  auto forged = Publisher<msg::DiagnosticArray>(std::move(
-      *RawPublisher::create(liar, "/diagnostics", msg::DiagnosticArray::kType, qos::kDefault)));
-  constexpr Qos kLatched{.durability = Durability::kTransientLocal, .depth = 1};
-  const auto forged_mode = RawPublisher::create(liar, "/level", msg::Float64::kType, kLatched);
+  const ros2::TestDomain domain;
+  ros2::LiveContext other(domain.options());
+  ros2::NodeEntry liar(*other, {"/", "liar"});
+  auto forged = ros2::Publisher<ros2::msg::DiagnosticArray>(std::move(*ros2::RawPublisher::create(
+      liar, "/diagnostics", ros2::msg::DiagnosticArray::kType, rtps::qos::kDefault)));
+  constexpr rtps::Qos kLatched{.durability = rtps::Durability::kTransientLocal, .depth = 1};
+  const auto forged_mode =
+      ros2::RawPublisher::create(liar, "/level", ros2::msg::Float64::kType, kLatched);
   ASSERT_TRUE(forged_mode);
-  (*forged_mode)->publish(encode(msg::Float64{90}));
+  (*forged_mode)->publish(rtps::encode(ros2::msg::Float64{90}));
   const auto temperature = [](const std::string& text) {
-    msg::DiagnosticArray array;
+    ros2::msg::DiagnosticArray array;
     array.status = {{1, "motor", "", "m1", {{"temperature", text}}}};
     return array;
   };
-  Timer lies(other->executor(), 10ms, [&] { forged.publish(temperature("90")); });
+  ros2::Timer lies(other->executor(), 10ms, [&] { forged.publish(temperature("90")); });
   Linked linked(domain, {},
                 "COMPONENT robot NODE /robot\n"
                 "SIGNAL temperature DIAGNOSTIC motor KEY temperature FROM robot\n"
@@ -372,12 +375,13 @@ TEST(Link, ReadsASignalOnlyOfThePublisherThatIsDeclared) {
       linked.wait<LinkTrouble>(tells("status motor is published by /liar, but the rules "
                                      "read it FROM robot: culprit ignores /liar")));
   Robot robot(domain);
-  auto own = robot.publisher<msg::DiagnosticArray>("/diagnostics");
-  NodeEntry& entry = robot.managed->node().entry();
-  const auto own_level = RawPublisher::create(entry, "/level", msg::Float64::kType, kLatched);
+  auto own = robot.publisher<ros2::msg::DiagnosticArray>("/diagnostics");
+  ros2::NodeEntry& entry = robot.managed->node().entry();
+  const auto own_level =
+      ros2::RawPublisher::create(entry, "/level", ros2::msg::Float64::kType, kLatched);
   ASSERT_TRUE(own_level);
-  (*own_level)->publish(encode(msg::Float64{40}));  // once
-  Timer speaks(robot.context->executor(), 20ms, [&] { own.publish(temperature("40")); });
+  (*own_level)->publish(rtps::encode(ros2::msg::Float64{40}));  // once
+  ros2::Timer speaks(robot.context->executor(), 20ms, [&] { own.publish(temperature("40")); });
   const auto is = [](Value value) {
     return [value](const SignalRead& r) { return r.value == value; };
   };
@@ -388,22 +392,23 @@ TEST(Link, ReadsASignalOnlyOfThePublisherThatIsDeclared) {
 }
 
 TEST(Link, BelievesNoParameterEventOfOthers) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  LiveContext other(domain.options());
-  NodeEntry liar(*other, {"/", "liar"});
-  const auto forged =
-      RawPublisher::create(liar, "/parameter_events", msg::ParameterEvent::kType, qos::kDefault);
+  ros2::LiveContext other(domain.options());
+  ros2::NodeEntry liar(*other, {"/", "liar"});
+  const auto forged = ros2::RawPublisher::create(
+      liar, "/parameter_events", ros2::msg::ParameterEvent::kType, rtps::qos::kDefault);
   ASSERT_TRUE(forged);
   Linked linked(domain);
   const auto is = [](double value) {
     return [value](const ParameterRead& r) { return r.value == Value(value); };
   };
   ASSERT_TRUE(linked.wait<ParameterRead>(is(1.5)));
-  msg::ParameterEvent event;
+  ros2::msg::ParameterEvent event;
   event.node = "/robot";
-  event.changed_parameters = {{"gain", to_parameter_value(Value(9.0))}};
-  Timer lies(other->executor(), 20ms, [&, bytes = encode(event)] { (*forged)->publish(bytes); });
+  event.changed_parameters = {{"gain", ros2::to_parameter_value(Value(9.0))}};
+  ros2::Timer lies(other->executor(), 20ms,
+                   [&, bytes = rtps::encode(event)] { (*forged)->publish(bytes); });
   EXPECT_TRUE(linked.wait<LinkTrouble>(tells("/liar published that parameters of /robot changed")));
   EXPECT_FALSE(linked.wait<ParameterRead>(is(9.0), 500ms));
   EXPECT_EQ(linked.ask(SetParameter{"gain", Value(3.0)}).outcome, Outcome::kDone);
@@ -411,22 +416,24 @@ TEST(Link, BelievesNoParameterEventOfOthers) {
 }
 
 TEST(Link, DiscoversANewProcessBesideAThousandParticipantsOfAStranger) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Linked linked(domain, {}, kAliveRules);
-  EventLog<std::uint16_t> ports;  // announced to the whole domain
-  const auto spy = Participant::create(domain.options(), [&](const DiscoveryEvent& event) {
-    const auto* info = std::get_if<ParticipantInfo>(&event);
-    if (info != nullptr && !info->metatraffic.empty()) ports.add(info->metatraffic.front().port);
-  });
+  rtps::EventLog<std::uint16_t> ports;  // announced to the whole domain
+  const auto spy =
+      ros2::Participant::create(domain.options(), [&](const ros2::DiscoveryEvent& event) {
+        const auto* info = std::get_if<ros2::ParticipantInfo>(&event);
+        if (info != nullptr && !info->metatraffic.empty())
+          ports.add(info->metatraffic.front().port);
+      });
   ASSERT_TRUE(spy);
   ASSERT_TRUE(ports.wait_for_count(1));
   // One source would introduce no more than sixteen at once.
   std::vector<int> sockets;
-  for (int i = 0; i < 1100 / Newcomers::kAtOnce + 1; ++i)
+  for (int i = 0; i < 1100 / rtps::Newcomers::kAtOnce + 1; ++i)
     sockets.push_back(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const auto announce = [&](std::uint16_t number) {
-    const int socket = sockets[number / Newcomers::kAtOnce];
-    const Bytes datagram = announcement_of(number);
+    const int socket = sockets[number / rtps::Newcomers::kAtOnce];
+    const rtps::Bytes datagram = rtps::announcement_of(number);
     sockaddr_in to{};
     to.sin_family = AF_INET;
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -450,7 +457,7 @@ TEST(Link, DiscoversANewProcessBesideAThousandParticipantsOfAStranger) {
 
 // Before something is taken down that depends on it. No rule is about it, so nothing asks it periodically.
 TEST(Link, AsksWhetherANodeAnswersWhenItIsToldTo) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   Linked linked(domain, {}, "COMPONENT robot NODE /robot\n");
   ASSERT_TRUE(linked.wait<Probed>([](const Probed& p) { return p.answered; }));
@@ -473,7 +480,7 @@ TEST(Link, AsksWhetherANodeAnswersWhenItIsToldTo) {
 
 // As with nodes of other users, in containers or not: no visible process holds their sockets.
 TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Linked linked(domain, {},
                 "COMPONENT slam NODE /slam CONTAINER docker slam\n"
                 "COMPONENT lidar NODE /lidar UNIT lidar.service\n"
@@ -483,9 +490,9 @@ TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
       return told.text.find("the process of " + node + " is not proven") != std::string::npos;
     };
   };
-  Forger slam(domain.options(), free_port());
-  Forger lidar(domain.options(), free_port());
-  Forger robot(domain.options(), free_port());
+  ros2::Forger slam(domain.options(), ros2::free_port());
+  ros2::Forger lidar(domain.options(), ros2::free_port());
+  ros2::Forger robot(domain.options(), ros2::free_port());
   slam.says_that_it_holds({"/", "slam", {}, {}});
   ASSERT_TRUE(linked.sees("/slam"));
   lidar.says_that_it_holds({"/", "lidar", {}, {}});
@@ -498,10 +505,10 @@ TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
 
 // A node that answers a client that was made after the reader has also discovered the reader.
 TEST(Link, KnowsThatASilentNodeKnowsItsListener) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  auto silent = robot.publisher<msg::Float64>("/silent");
-  auto speaking = robot.publisher<msg::Float64>("/speaking");
+  auto silent = robot.publisher<ros2::msg::Float64>("/silent");
+  auto speaking = robot.publisher<ros2::msg::Float64>("/speaking");
   Linked linked(domain, {},
                 "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR\n"
                 "TRIGGER age(/silent) > 1h || age(/speaking) > 1h\n"
@@ -511,27 +518,29 @@ TEST(Link, KnowsThatASilentNodeKnowsItsListener) {
   };
   const auto begins_to_speak = [&] {
     for (int i = 0; i < 100; ++i) {
-      speaking.publish(msg::Float64{1});
+      speaking.publish(ros2::msg::Float64{1});
       if (linked.wait<SampleArrived>(is_about("/speaking"), 200ms)) return true;
     }
     return false;
   };
   ASSERT_TRUE(begins_to_speak());
-  linked.link->prove_listening(live_now() + kPatience);
+  linked.link->prove_listening(live_now() + rtps::kPatience);
   EXPECT_TRUE(linked.wait<ListenerKnown>(is_about("/silent")));
   EXPECT_FALSE(linked.has_seen<ListenerKnown>(is_about("/speaking"))) << "no request is needed";
-  silent.publish(msg::Float64{1});
+  silent.publish(ros2::msg::Float64{1});
   EXPECT_TRUE(linked.wait<SampleArrived>(is_about("/silent"))) << "the first one arrives";
 }
 
 TEST(Link, TakesTheListenerForUnknownToANodeThatDoesNotAnswer) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  const auto hung_topic = robot.publisher<msg::Float64>("/of_hung");
-  LiveContext context(domain.options());
-  std::unique_ptr<LifecycleNode> other;
-  context.run([&] { other = std::move(*LifecycleNode::create(*context, {"/", "other"}, {})); });
-  const auto well_topic = other->node().create_publisher<msg::Float64>("/of_well");
+  const auto hung_topic = robot.publisher<ros2::msg::Float64>("/of_hung");
+  ros2::LiveContext context(domain.options());
+  std::unique_ptr<ros2::LifecycleNode> other;
+  context.run([&] {
+    other = std::move(*ros2::LifecycleNode::create(*context, {"/", "other"}, {}));
+  });
+  const auto well_topic = other->node().create_publisher<ros2::msg::Float64>("/of_well");
   Linked linked(domain, {},
                 "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR\n"
                 "TRIGGER age(/of_hung) > 1h || age(/of_well) > 1h\n"
@@ -548,7 +557,7 @@ TEST(Link, TakesTheListenerForUnknownToANodeThatDoesNotAnswer) {
     });
   });
   hangs.get_future().wait();
-  linked.link->prove_listening(live_now() + kPatience);
+  linked.link->prove_listening(live_now() + rtps::kPatience);
   EXPECT_TRUE(linked.wait<ListenerKnown>(is_about("/of_well")));
   EXPECT_FALSE(linked.has_seen<ListenerKnown>(is_about("/of_hung"))) << "its callback hangs";
   goes_on.set_value();
@@ -557,8 +566,8 @@ TEST(Link, TakesTheListenerForUnknownToANodeThatDoesNotAnswer) {
 }
 
 TEST(Link, IsANodeThatOthersSee) {
-  const TestDomain domain;
-  LiveContext other(domain.options());
+  const ros2::TestDomain domain;
+  ros2::LiveContext other(domain.options());
   Linked linked(domain);
   EXPECT_TRUE(other.sees_node("/culprit"));
   EXPECT_TRUE(other.sees_endpoint("/culprit", EndpointKind::kPublisher, "/diagnostics"));
@@ -567,20 +576,20 @@ TEST(Link, IsANodeThatOthersSee) {
 }
 
 TEST(Link, PublishesWhatItIsToldAgainAndAgain) {
-  const TestDomain domain;
-  LiveContext other(domain.options());
-  NodeEntry listener(*other, {"/", "listener"});
-  EventLog<msg::DiagnosticArray> heard;
-  auto subscription = Subscription::create(listener, "/diagnostics", msg::DiagnosticArray::kType,
-                                           qos::kDefault, [&](ByteView payload) {
-                                             if (auto array = decode<msg::DiagnosticArray>(payload))
-                                               heard.add(*array);
-                                           });
+  const ros2::TestDomain domain;
+  ros2::LiveContext other(domain.options());
+  ros2::NodeEntry listener(*other, {"/", "listener"});
+  rtps::EventLog<ros2::msg::DiagnosticArray> heard;
+  auto subscription = ros2::Subscription::create(
+      listener, "/diagnostics", ros2::msg::DiagnosticArray::kType, rtps::qos::kDefault,
+      [&](rtps::ByteView payload) {
+        if (auto array = rtps::decode<ros2::msg::DiagnosticArray>(payload)) heard.add(*array);
+      });
   ASSERT_TRUE(subscription);
   Linked linked(domain);
   linked.link->publish({{"culprit: R", 2, "a person must look", {{"attempts", "6"}}}});
   ASSERT_TRUE(heard.wait_for_count(2)) << "a late joiner must receive it too";
-  const msg::DiagnosticStatus status = heard.all()[0].status.at(0);
+  const ros2::msg::DiagnosticStatus status = heard.all()[0].status.at(0);
   EXPECT_EQ(status.level, 2);
   EXPECT_EQ(status.name, "culprit: R");
   EXPECT_EQ(status.values.at(0).value, "6");
@@ -592,59 +601,59 @@ TEST(Link, ReadsFieldsOfMessagesThatFilesDefine) {
   std::filesystem::create_directories(folder / "my_msgs/msg");
   std::ofstream(folder / "my_msgs/msg/Cell.msg") << "string name\nfloat32 charge\n";
   std::ofstream(folder / "my_msgs/msg/Battery.msg") << "std_msgs/Header header\nCell[] cells\n";
-  CdrWriter payload;
-  payload(msg::Header{{1, 2}, "base"}, std::uint32_t{2}, std::string("left"), 0.25F,
+  rtps::CdrWriter payload;
+  payload(ros2::msg::Header{{1, 2}, "base"}, std::uint32_t{2}, std::string("left"), 0.25F,
           std::string("right"), 0.75F);
-  const Bytes bytes = payload.take();
+  const rtps::Bytes bytes = payload.take();
 
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  const auto publisher =
-      RawPublisher::create(robot.managed->node().entry(), "/battery", "my_msgs/msg/Battery", {});
+  const auto publisher = ros2::RawPublisher::create(robot.managed->node().entry(), "/battery",
+                                                    "my_msgs/msg/Battery", {});
   ASSERT_TRUE(publisher);
   Linked linked(domain, folder);
   ASSERT_TRUE(linked.sees("/robot"));
-  Timer timer(robot.context->executor(), 20ms, [&] { (*publisher)->publish(bytes); });
+  ros2::Timer timer(robot.context->executor(), 20ms, [&] { (*publisher)->publish(bytes); });
   EXPECT_EQ(linked.reads("charge"), Value(0.75));
   std::filesystem::remove_all(folder);
 }
 
 TEST(Link, ReadsWhatWasLatchedBeforeItCame) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  const auto publisher =
-      RawPublisher::create(robot.managed->node().entry(), "/visibility", "std_msgs/msg/Float64",
-                           {.durability = Durability::kTransientLocal, .depth = 1});
+  const auto publisher = ros2::RawPublisher::create(
+      robot.managed->node().entry(), "/visibility", "std_msgs/msg/Float64",
+      {.durability = rtps::Durability::kTransientLocal, .depth = 1});
   ASSERT_TRUE(publisher);
-  (*publisher)->publish(encode(msg::Float64{3.5}));
+  (*publisher)->publish(rtps::encode(ros2::msg::Float64{3.5}));
   Linked linked(domain);
   EXPECT_EQ(linked.reads("visibility"), Value(3.5));
   EXPECT_FALSE(linked.has_seen<SampleArrived>([](const SampleArrived&) { return true; }))
       << "earlier samples are no beats of its rhythm";
-  (*publisher)->publish(encode(msg::Float64{4.5}));
+  (*publisher)->publish(rtps::encode(ros2::msg::Float64{4.5}));
   EXPECT_TRUE(linked.wait<SignalRead>([](const SignalRead& r) { return r.value == Value(4.5); }));
 }
 
 TEST(Link, HearsTopicsWithKeys) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  const auto publisher =
-      RawPublisher::create(robot.managed->node().entry(), "/visibility", "std_msgs/msg/Float64",
-                           {.durability = Durability::kTransientLocal, .keys = Keys::kSome});
+  const auto publisher = ros2::RawPublisher::create(
+      robot.managed->node().entry(), "/visibility", "std_msgs/msg/Float64",
+      {.durability = rtps::Durability::kTransientLocal, .keys = rtps::Keys::kSome});
   ASSERT_TRUE(publisher);
   Linked linked(domain);
   ASSERT_TRUE(linked.sees("/robot"));
   double value = 0;
-  Timer timer(robot.context->executor(), 20ms,
-              [&] { (*publisher)->publish(encode(msg::Float64{value += 1})); });
+  ros2::Timer timer(robot.context->executor(), 20ms,
+                    [&] { (*publisher)->publish(rtps::encode(ros2::msg::Float64{value += 1})); });
   EXPECT_TRUE(linked.reads("visibility"));
   EXPECT_TRUE(linked.wait<SampleArrived>([](const SampleArrived&) { return true; }));
 }
 
 TEST(Link, TellsOfANodeThatHasItsName) {
-  const TestDomain domain;
-  LiveContext other(domain.options());
-  NodeEntry namesake(*other, {"/", "culprit"});
+  const ros2::TestDomain domain;
+  ros2::LiveContext other(domain.options());
+  ros2::NodeEntry namesake(*other, {"/", "culprit"});
   Linked linked(domain);
   EXPECT_TRUE(linked.wait<LinkTrouble>([](const LinkTrouble& t) {
     return t.text.find("another node is called /culprit, too") != std::string::npos &&
@@ -653,18 +662,18 @@ TEST(Link, TellsOfANodeThatHasItsName) {
 }
 
 TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  auto visibility = robot.publisher<msg::Float64>("/visibility");
-  auto diagnostics = robot.publisher<msg::DiagnosticArray>("/diagnostics");
+  auto visibility = robot.publisher<ros2::msg::Float64>("/visibility");
+  auto diagnostics = robot.publisher<ros2::msg::DiagnosticArray>("/diagnostics");
   Linked linked(domain);
   ASSERT_TRUE(linked.sees("/robot"));
   // Volatile data: published until it arrives.
-  Timer timer(robot.context->executor(), 20ms, [&] {
+  ros2::Timer timer(robot.context->executor(), 20ms, [&] {
     visibility.publish({2.5});
-    msg::DiagnosticStatus motor{1, "motor", "", "m1", {{"temperature", "60.5"}}};
-    msg::DiagnosticStatus base{0, "base", "", "robot", {{"speed", "1"}}};
-    msg::DiagnosticArray array;
+    ros2::msg::DiagnosticStatus motor{1, "motor", "", "m1", {{"temperature", "60.5"}}};
+    ros2::msg::DiagnosticStatus base{0, "base", "", "robot", {{"speed", "1"}}};
+    ros2::msg::DiagnosticArray array;
     array.status = {motor, base};
     diagnostics.publish(array);
   });
@@ -682,13 +691,15 @@ TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
 }
 
 TEST(Link, TellsWhichOfTwoNodesPublished) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  LiveContext context(domain.options());
-  std::unique_ptr<LifecycleNode> other;
-  context.run([&] { other = std::move(*LifecycleNode::create(*context, {"/", "other"}, {})); });
-  auto of_robot = robot.publisher<msg::Float64>("/scan");
-  auto of_other = std::move(*other->node().create_publisher<msg::Float64>("/scan"));
+  ros2::LiveContext context(domain.options());
+  std::unique_ptr<ros2::LifecycleNode> other;
+  context.run([&] {
+    other = std::move(*ros2::LifecycleNode::create(*context, {"/", "other"}, {}));
+  });
+  auto of_robot = robot.publisher<ros2::msg::Float64>("/scan");
+  auto of_other = std::move(*other->node().create_publisher<ros2::msg::Float64>("/scan"));
   Linked linked(domain, {},
                 "COMPONENT robot NODE /robot\nCOMPONENT other NODE /other\nRULE R\n"
                 "POLICIES ERROR REPORT\nTRIGGER age(/scan FROM robot) > 1h || "
@@ -696,25 +707,26 @@ TEST(Link, TellsWhichOfTwoNodesPublished) {
   const auto is_of = [](std::size_t topic) {
     return [topic](const SampleArrived& seen) { return seen.topic == TopicId(topic); };
   };
-  Timer timer(robot.context->executor(), 20ms, [&] { of_robot.publish(msg::Float64{1}); });
+  ros2::Timer timer(robot.context->executor(), 20ms,
+                    [&] { of_robot.publish(ros2::msg::Float64{1}); });
   EXPECT_TRUE(linked.wait<SampleArrived>(is_of(0)));
   EXPECT_TRUE(linked.wait<SampleArrived>(is_of(2))) << "the signal of all publishers has it, too";
   EXPECT_FALSE(linked.has_seen<SampleArrived>(is_of(1)));
-  Timer another(context->executor(), 20ms, [&] { of_other.publish(msg::Float64{1}); });
+  ros2::Timer another(context->executor(), 20ms, [&] { of_other.publish(ros2::msg::Float64{1}); });
   EXPECT_TRUE(linked.wait<SampleArrived>(is_of(1)));
 }
 
 TEST(Link, ReadsTheGoalsOfAnAction) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  auto status = robot.publisher<msg::GoalStatusArray>("/go/_action/status");
+  auto status = robot.publisher<ros2::msg::GoalStatusArray>("/go/_action/status");
   Linked linked(domain, {},
                 "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR REPORT\n"
                 "TRIGGER !alive(robot) || goals(/go, aborted, 60s) > 1 || goal_age(/go) > 1h\n");
-  msg::GoalStatusArray array;
+  ros2::msg::GoalStatusArray array;
   array.status_list.resize(1);
   array.status_list[0].status = 6;
-  Timer timer(robot.context->executor(), 20ms, [&] { status.publish(array); });
+  ros2::Timer timer(robot.context->executor(), 20ms, [&] { status.publish(array); });
   const auto seen = linked.wait<GoalsSeen>([](const GoalsSeen&) { return true; });
   ASSERT_TRUE(seen);
   ASSERT_EQ(seen->goals.size(), 1u);
@@ -722,15 +734,15 @@ TEST(Link, ReadsTheGoalsOfAnAction) {
 }
 
 TEST(Link, CountsTheLogOfAComponent) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  auto log = robot.publisher<msg::Log>("/rosout");
+  auto log = robot.publisher<ros2::msg::Log>("/rosout");
   Linked linked(domain, {},
                 "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR REPORT\n"
                 "TRIGGER !alive(robot) || logs(robot, ERROR, 60s) > 3\n");
-  msg::Log line;
+  ros2::msg::Log line;
   line.name = "robot.driver";
-  Timer timer(robot.context->executor(), 20ms, [&] {
+  ros2::Timer timer(robot.context->executor(), 20ms, [&] {
     line.level = line.level == 40 ? 30 : 40;
     log.publish(line);
   });
@@ -742,11 +754,11 @@ TEST(Link, CountsTheLogOfAComponent) {
 }
 
 TEST(Link, AsksEachNodeOfAProcessAndMeasuresIt) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  std::unique_ptr<LifecycleNode> costmap;
+  std::unique_ptr<ros2::LifecycleNode> costmap;
   robot.context.run([&] {
-    costmap = std::move(*LifecycleNode::create(*robot.context, {"/", "costmap"}, {}));
+    costmap = std::move(*ros2::LifecycleNode::create(*robot.context, {"/", "costmap"}, {}));
   });
   Linked linked(domain, {},
                 "COMPONENT robot NODE /robot /costmap\nRULE R\nPOLICIES ERROR REPORT\n"
@@ -763,9 +775,9 @@ TEST(Link, AsksEachNodeOfAProcessAndMeasuresIt) {
 // If many messages come each second, most lie in their socket for a moment. A topic timeout counts
 // from the arrival of the last one.
 TEST(Link, KnowsWhenMessagesCameThatItReadsLater) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  auto speaking = robot.publisher<msg::Float64>("/speaking");
+  auto speaking = robot.publisher<ros2::msg::Float64>("/speaking");
   Linked linked(domain, {}, R"(
 COMPONENT robot NODE /robot
 RULE R
@@ -777,7 +789,7 @@ RULE R
   ASSERT_TRUE(linked.sees("/robot"));
   std::vector<Time> said;
   const auto is_about_it = [](const SampleArrived&) { return true; };
-  const Time end = later(live_now(), kPatience);
+  const Time end = later(live_now(), rtps::kPatience);
   do {
     speaking.publish({1.0});
   } while (!linked.wait<SampleArrived>(is_about_it, 20ms) && live_now() < end);
@@ -809,16 +821,16 @@ RULE R
 
 // For misspelled names: the existing names are reported once, and only while something is missing.
 TEST(Link, TellsWhatDiagnosticsAndParametersAreReallyCalled) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  auto diagnostics = robot.publisher<msg::DiagnosticArray>("/diagnostics");
+  auto diagnostics = robot.publisher<ros2::msg::DiagnosticArray>("/diagnostics");
   Linked linked(domain, {},
                 "COMPONENT robot NODE /robot\nSIGNAL hot DIAGNOSTIC moter KEY temperature\n"
                 "RULE R\nPOLICIES ERROR\nTRIGGER hot > 50 || parameter(robot, gian) > 2\n"
                 "STRATEGY s 50 10\nADAPTATION robot restart 5\n");
   ASSERT_TRUE(linked.sees("/robot"));
-  Timer timer(robot.context->executor(), 20ms, [&] {
-    msg::DiagnosticArray array;
+  ros2::Timer timer(robot.context->executor(), 20ms, [&] {
+    ros2::msg::DiagnosticArray array;
     array.status = {{1, "motor", "", "m1", {{"temperature", "60.5"}}},
                     {1, std::string(300, 'x'), "", "", {}}};
     diagnostics.publish(array);
@@ -837,29 +849,31 @@ TEST(Link, TellsWhatDiagnosticsAndParametersAreReallyCalled) {
 
 // A best effort reader passes over what it takes for old.
 TEST(Link, HearsAWriterAgainWhoseNumbersWereForged) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   std::mutex mutex;
-  std::optional<Guid> writer;
+  std::optional<rtps::Guid> writer;
   std::uint16_t port = 0;
   std::atomic<int> published = 0;
-  auto visibility = robot.publisher<msg::Float64>("/visibility");
-  Timer timer(robot.context->executor(), 10ms,
-              [&] { visibility.publish({static_cast<double>(++published)}); });
-  const auto spy = Participant::create(domain.options(), [&](const DiscoveryEvent& event) {
-    const std::lock_guard lock(mutex);
-    const auto* endpoint = std::get_if<EndpointInfo>(&event);
-    if (endpoint != nullptr && endpoint->topic == "rt/visibility" && !endpoint->guid.is_reader())
-      writer = endpoint->guid;
-    const auto* info = std::get_if<ParticipantInfo>(&event);
-    const bool is_robot = info != nullptr && info->guid == robot.context->participant().guid();
-    if (info != nullptr && !is_robot && !info->metatraffic.empty())
-      port = info->metatraffic.front().port;
-  });
+  auto visibility = robot.publisher<ros2::msg::Float64>("/visibility");
+  ros2::Timer timer(robot.context->executor(), 10ms,
+                    [&] { visibility.publish({static_cast<double>(++published)}); });
+  const auto spy =
+      ros2::Participant::create(domain.options(), [&](const ros2::DiscoveryEvent& event) {
+        const std::lock_guard lock(mutex);
+        const auto* endpoint = std::get_if<rtps::EndpointInfo>(&event);
+        if (endpoint != nullptr && endpoint->topic == "rt/visibility" &&
+            !endpoint->guid.is_reader())
+          writer = endpoint->guid;
+        const auto* info = std::get_if<ros2::ParticipantInfo>(&event);
+        const bool is_robot = info != nullptr && info->guid == robot.context->participant().guid();
+        if (info != nullptr && !is_robot && !info->metatraffic.empty())
+          port = info->metatraffic.front().port;
+      });
   ASSERT_TRUE(spy) << spy.error();
   Linked linked(domain);
   ASSERT_TRUE(linked.reads("visibility"));
-  for (const Time end = live_now() + kPatience; live_now() < end;) {
+  for (const Time end = live_now() + rtps::kPatience; live_now() < end;) {
     const std::lock_guard lock(mutex);
     if (writer && port != 0) break;
   }
@@ -872,8 +886,8 @@ TEST(Link, HearsAWriterAgainWhoseNumbersWereForged) {
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   to.sin_port = htons(static_cast<std::uint16_t>(port + 1));
   for (int i = 1; i <= 100; ++i) {
-    const TestDatagram forged =
-        TestDatagram(writer->prefix()).data(*writer, published + i * std::int64_t{250});
+    const rtps::TestDatagram forged =
+        rtps::TestDatagram(writer->prefix()).data(*writer, published + i * std::int64_t{250});
     sendto(socket, forged.bytes().data(), forged.bytes().size(), 0,
            reinterpret_cast<sockaddr*>(&to), sizeof to);
   }
@@ -889,21 +903,21 @@ TEST(Link, HearsAWriterAgainWhoseNumbersWereForged) {
 }
 
 TEST(Link, SurvivesHostileMessages) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   auto& entry = robot.managed->node().entry();
-  auto diagnostics = std::move(
-      *RawPublisher::create(entry, "/diagnostics", msg::DiagnosticArray::kType, qos::kDefault));
-  auto visibility =
-      std::move(*RawPublisher::create(entry, "/visibility", msg::Float64::kType, qos::kDefault));
-  auto honest = robot.publisher<msg::Float64>("/visibility");
+  auto diagnostics = std::move(*ros2::RawPublisher::create(
+      entry, "/diagnostics", ros2::msg::DiagnosticArray::kType, rtps::qos::kDefault));
+  auto visibility = std::move(*ros2::RawPublisher::create(
+      entry, "/visibility", ros2::msg::Float64::kType, rtps::qos::kDefault));
+  auto honest = robot.publisher<ros2::msg::Float64>("/visibility");
   Linked linked(domain);
   ASSERT_TRUE(linked.sees("/robot"));
-  const Bytes cut = {0, 1, 0, 0, 0xff};
-  const Bytes huge = {0, 1, 0, 0, 0, 0, 0, 0, 0,    0,    0,    0,
-                      1, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff};
-  Timer timer(robot.context->executor(), 20ms, [&] {
-    for (const Bytes& payload : {cut, huge}) {
+  const rtps::Bytes cut = {0, 1, 0, 0, 0xff};
+  const rtps::Bytes huge = {0, 1, 0, 0, 0, 0, 0, 0, 0,    0,    0,    0,
+                            1, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff};
+  ros2::Timer timer(robot.context->executor(), 20ms, [&] {
+    for (const rtps::Bytes& payload : {cut, huge}) {
       diagnostics->publish(payload);
       visibility->publish(payload);
     }
@@ -913,7 +927,7 @@ TEST(Link, SurvivesHostileMessages) {
 }
 
 TEST(Link, SteersLifecycleAndParameters) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   Linked linked(domain);
   EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kConfigure}).outcome, Outcome::kDone);
@@ -932,16 +946,16 @@ TEST(Link, SteersLifecycleAndParameters) {
 // The helper is killed at any moment: each command has one reply, and the node was asked once at most.
 TEST(Link, DoesNothingTwiceAndForgetsNothingWhenItsHelperIsKilled) {
   constexpr int kKills = 3;
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder folder;
   Robot robot(domain);
   std::mutex mutex;
   std::map<double, int> set;
   robot.context.run([&] {
     robot.managed->node().parameters().on_set(
-        [&](std::span<const msg::Parameter> parameters) -> Expected<void> {
+        [&](std::span<const ros2::msg::Parameter> parameters) -> Expected<void> {
           const std::lock_guard lock(mutex);
-          for (const msg::Parameter& each : parameters) ++set[each.value.double_value];
+          for (const ros2::msg::Parameter& each : parameters) ++set[each.value.double_value];
           return {};
         });
   });
@@ -974,19 +988,20 @@ TEST(Link, DoesNothingTwiceAndForgetsNothingWhenItsHelperIsKilled) {
 }
 
 TEST(Link, KnowsTheStateOfANodeWhoseTransitionsItDoesNotHearOf) {
-  const TestDomain domain;
-  LiveContext context(domain.options());
-  std::unique_ptr<Node> node;
-  std::vector<std::unique_ptr<ServiceServer>> services;
+  const ros2::TestDomain domain;
+  ros2::LiveContext context(domain.options());
+  std::unique_ptr<ros2::Node> node;
+  std::vector<std::unique_ptr<ros2::ServiceServer>> services;
   std::atomic<std::uint8_t> state = static_cast<std::uint8_t>(LifecycleState::kInactive);
   context.run([&] {
-    node = std::move(*Node::create(*context, {"/", "robot"}));
-    services.push_back(std::move(*node->create_service<srv::ChangeState>(
-        "~/change_state",
-        [](const srv::ChangeState::Request&) { return srv::ChangeState::Response{false}; })));
-    services.push_back(std::move(
-        *node->create_service<srv::GetState>("~/get_state", [&](const srv::GetState::Request&) {
-          return srv::GetState::Response{{state, ""}};
+    node = std::move(*ros2::Node::create(*context, {"/", "robot"}));
+    services.push_back(std::move(*node->create_service<ros2::srv::ChangeState>(
+        "~/change_state", [](const ros2::srv::ChangeState::Request&) {
+          return ros2::srv::ChangeState::Response{false};
+        })));
+    services.push_back(std::move(*node->create_service<ros2::srv::GetState>(
+        "~/get_state", [&](const ros2::srv::GetState::Request&) {
+          return ros2::srv::GetState::Response{{state, ""}};
         })));
   });
   Linked linked(domain);
@@ -1001,7 +1016,7 @@ TEST(Link, KnowsTheStateOfANodeWhoseTransitionsItDoesNotHearOf) {
 }
 
 TEST(Link, SaysWhyAParameterCannotBe) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   Linked linked(domain);
   const Reply none = linked.ask(ReadParameter{"volume"});
@@ -1012,7 +1027,7 @@ TEST(Link, SaysWhyAParameterCannotBe) {
 }
 
 TEST(Link, ReadsAndSetsParametersThatAreLists) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   Linked linked(domain);
   const auto reads = [&] {
@@ -1032,20 +1047,20 @@ TEST(Link, ReadsAndSetsParametersThatAreLists) {
 }
 
 TEST(Link, CallsRoutines) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  std::vector<std::unique_ptr<ServiceServer>> services;
+  std::vector<std::unique_ptr<ros2::ServiceServer>> services;
   int calls = 0;
   robot.context.run([&] {
-    Node& node = robot.managed->node();
-    services.push_back(std::move(
-        *node.create_service<srv::Trigger>("~/calibrate", [&](const srv::Trigger::Request&) {
+    ros2::Node& node = robot.managed->node();
+    services.push_back(std::move(*node.create_service<ros2::srv::Trigger>(
+        "~/calibrate", [&](const ros2::srv::Trigger::Request&) {
           ++calls;
-          return srv::Trigger::Response{calls == 1, "call " + std::to_string(calls)};
+          return ros2::srv::Trigger::Response{calls == 1, "call " + std::to_string(calls)};
         })));
-    services.push_back(std::move(
-        *node.create_service<srv::SetBool>("~/light", [](const srv::SetBool::Request& request) {
-          return srv::SetBool::Response{request.data, request.data ? "" : "it is day"};
+    services.push_back(std::move(*node.create_service<ros2::srv::SetBool>(
+        "~/light", [](const ros2::srv::SetBool::Request& request) {
+          return ros2::srv::SetBool::Response{request.data, request.data ? "" : "it is day"};
         })));
   });
   Linked linked(domain);
@@ -1066,19 +1081,20 @@ TEST(Link, CallsRoutines) {
 }
 
 TEST(Link, ChangesModes) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
-  std::vector<std::unique_ptr<ServiceServer>> services;
+  std::vector<std::unique_ptr<ros2::ServiceServer>> services;
   std::string mode = "slow";
   robot.context.run([&] {
-    Node& node = robot.managed->node();
-    services.push_back(std::move(*node.create_service<srv::ChangeMode>(
-        "~/change_mode", [&](const srv::ChangeMode::Request& r) {
+    ros2::Node& node = robot.managed->node();
+    services.push_back(std::move(*node.create_service<ros2::srv::ChangeMode>(
+        "~/change_mode", [&](const ros2::srv::ChangeMode::Request& r) {
           mode = r.mode_name;
-          return srv::ChangeMode::Response{true};
+          return ros2::srv::ChangeMode::Response{true};
         })));
-    services.push_back(std::move(*node.create_service<srv::GetMode>(
-        "~/get_mode", [&](const srv::GetMode::Request&) { return srv::GetMode::Response{mode}; })));
+    services.push_back(std::move(*node.create_service<ros2::srv::GetMode>(
+        "~/get_mode",
+        [&](const ros2::srv::GetMode::Request&) { return ros2::srv::GetMode::Response{mode}; })));
   });
   Linked linked(domain);
   EXPECT_EQ(linked.ask(ChangeMode{"fast"}).outcome, Outcome::kDone);
@@ -1086,7 +1102,7 @@ TEST(Link, ChangesModes) {
 }
 
 TEST(Link, TellsSystemsFromNodesWhoseModesAManagerChanges) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   Linked linked(domain);
   ASSERT_TRUE(linked.sees("/robot"));
@@ -1094,15 +1110,16 @@ TEST(Link, TellsSystemsFromNodesWhoseModesAManagerChanges) {
     return [=](const auto& seen) { return seen.node == name; };
   };
   {
-    LiveContext context(domain.options());
-    std::unique_ptr<Node> manager;
-    std::vector<std::unique_ptr<ServiceServer>> services;
+    ros2::LiveContext context(domain.options());
+    std::unique_ptr<ros2::Node> manager;
+    std::vector<std::unique_ptr<ros2::ServiceServer>> services;
     context.run([&] {
-      manager = std::move(*Node::create(*context, {"/", "modes"}));
+      manager = std::move(*ros2::Node::create(*context, {"/", "modes"}));
       for (const char* service : {"/robot/change_mode", "/absent/change_mode"})
-        services.push_back(std::move(*manager->create_service<srv::ChangeMode>(
-            service,
-            [](const srv::ChangeMode::Request&) { return srv::ChangeMode::Response{true}; })));
+        services.push_back(std::move(*manager->create_service<ros2::srv::ChangeMode>(
+            service, [](const ros2::srv::ChangeMode::Request&) {
+              return ros2::srv::ChangeMode::Response{true};
+            })));
     });
     EXPECT_TRUE(linked.sees("/absent")) << "a system is there with its manager";
     context.run([&] {
@@ -1116,7 +1133,7 @@ TEST(Link, TellsSystemsFromNodesWhoseModesAManagerChanges) {
 }
 
 TEST(Link, AnswersForNodesThatAreNotThere) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Linked linked(domain);
   const Reply reply = linked.ask(ReadLifecycle{}, 300ms, ComponentId(1));
   EXPECT_EQ(reply.outcome, Outcome::kUnreachable);
@@ -1124,13 +1141,13 @@ TEST(Link, AnswersForNodesThatAreNotThere) {
 }
 
 TEST(Link, AnswersForServicesThatNeverAnswer) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   Linked linked(domain);
   EXPECT_EQ(linked.ask(ReadLifecycle{}).outcome, Outcome::kDone);
   EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kConfigure}).outcome, Outcome::kDone);
   std::promise<void> hang;
-  TaskGroup tasks(robot.context->executor());
+  ros2::TaskGroup tasks(robot.context->executor());
   tasks.post([&] { hang.get_future().wait(); });  // the node's only thread
   EXPECT_EQ(linked.ask(ReadLifecycle{}, 300ms).outcome, Outcome::kTimedOut);
   EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kActivate}, 300ms).outcome, Outcome::kTimedOut);
@@ -1138,13 +1155,13 @@ TEST(Link, AnswersForServicesThatNeverAnswer) {
 }
 
 TEST(Link, AnswersForRepliesOfTheWrongType) {
-  const TestDomain domain;
-  LiveContext liar(domain.options());
-  NodeEntry entry(*liar, {"/", "robot"});
+  const ros2::TestDomain domain;
+  ros2::LiveContext liar(domain.options());
+  ros2::NodeEntry entry(*liar, {"/", "robot"});
   // Named and typed as the real service, but its answers are none of its responses.
-  auto server = ServiceServer::create(
-      entry, {"/robot/get_state", std::string(srv::GetState::kType)}, qos::kServices,
-      [](ByteView) { return Bytes{0, 1, 0, 0, 1, 0, 0, 0, 0xff, 0xff, 0xff, 0x7f}; });
+  auto server = ros2::ServiceServer::create(
+      entry, {"/robot/get_state", std::string(ros2::srv::GetState::kType)}, rtps::qos::kServices,
+      [](rtps::ByteView) { return rtps::Bytes{0, 1, 0, 0, 1, 0, 0, 0, 0xff, 0xff, 0xff, 0x7f}; });
   ASSERT_TRUE(server);
   Linked linked(domain);
   const Reply reply = linked.ask(ReadLifecycle{});
@@ -1153,7 +1170,7 @@ TEST(Link, AnswersForRepliesOfTheWrongType) {
 }
 
 TEST(Link, LosesSightOfANodeThatLeaves) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Linked linked(domain);
   {
     Robot robot(domain);
@@ -1166,7 +1183,7 @@ TEST(Link, LosesSightOfANodeThatLeaves) {
 
 void use_simulated_time(Robot& robot) {
   robot.context.run([&] {
-    const msg::Parameter use{"use_sim_time", to_parameter_value(Value(true))};
+    const ros2::msg::Parameter use{"use_sim_time", ros2::to_parameter_value(Value(true))};
     EXPECT_TRUE(robot.managed->node().parameters().set(std::array{use}).successful);
   });
 }
@@ -1175,11 +1192,12 @@ void use_simulated_time(Robot& robot) {
 struct ClockNode {
   explicit ClockNode(Robot& robot) : context(robot.context) {
     context.run([&] {
-      node = std::move(*LifecycleNode::create(*context, {"/", "simulator"}, {}));
-      publisher = std::move(*RawPublisher::create(node->node().entry(), SimulatedClock::kTopic,
-                                                  "rosgraph_msgs/msg/Clock", {}));
-      ticks = std::make_unique<Timer>(context->executor(), 20ms, [this] {
-        if (runs) publisher->publish(encode(msg::Time{1, static_cast<std::uint32_t>(++shown)}));
+      node = std::move(*ros2::LifecycleNode::create(*context, {"/", "simulator"}, {}));
+      publisher = std::move(*ros2::RawPublisher::create(
+          node->node().entry(), SimulatedClock::kTopic, "rosgraph_msgs/msg/Clock", {}));
+      ticks = std::make_unique<ros2::Timer>(context->executor(), 20ms, [this] {
+        if (runs)
+          publisher->publish(rtps::encode(ros2::msg::Time{1, static_cast<std::uint32_t>(++shown)}));
       });
     });
   }
@@ -1190,10 +1208,10 @@ struct ClockNode {
       node.reset();
     });
   }
-  LiveContext& context;
-  std::unique_ptr<LifecycleNode> node;
-  std::unique_ptr<RawPublisher> publisher;
-  std::unique_ptr<Timer> ticks;
+  ros2::LiveContext& context;
+  std::unique_ptr<ros2::LifecycleNode> node;
+  std::unique_ptr<ros2::RawPublisher> publisher;
+  std::unique_ptr<ros2::Timer> ticks;
   std::atomic<bool> runs = true;
   std::int32_t shown = 0;
 };
@@ -1207,14 +1225,14 @@ bool is_followed(Linked& linked) {
 }
 
 TEST(Link, FollowsTheClockOfNodesThatUseSimulatedTimeAndSaysSo) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   use_simulated_time(robot);
   ClockNode clock(robot);
   Linked linked(domain);
   EXPECT_TRUE(is_followed(linked));
   clock.runs = false;
-  for (const Time end = live_now() + kPatience; !linked.link->is_paused();) {
+  for (const Time end = live_now() + rtps::kPatience; !linked.link->is_paused();) {
     ASSERT_LT(live_now(), end);
     std::this_thread::sleep_for(10ms);
   }
@@ -1223,12 +1241,12 @@ TEST(Link, FollowsTheClockOfNodesThatUseSimulatedTimeAndSaysSo) {
 
 // It loads a model before it spins, for longer than one request waits.
 TEST(Link, AsksANodeThatLoadsUntilItAnswers) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   use_simulated_time(robot);
   ClockNode clock(robot);
   std::promise<void> loaded;
-  TaskGroup tasks(robot.context->executor());
+  ros2::TaskGroup tasks(robot.context->executor());
   tasks.post([&] { loaded.get_future().wait(); });
   Linked linked(
       domain, {},
@@ -1247,7 +1265,7 @@ TEST(Link, AsksANodeThatLoadsUntilItAnswers) {
 }
 
 TEST(Link, HoldsOnlyTheNodesThatUseSimulatedTimeBesideOthers) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   use_simulated_time(robot);
   ClockNode clock(robot);
@@ -1272,7 +1290,7 @@ TEST(Link, HoldsOnlyTheNodesThatUseSimulatedTimeBesideOthers) {
 
 // As after `ros2 param set /robot use_sim_time true`: a node then subscribes to /clock.
 TEST(Link, LearnsThatANodeUsesSimulatedTimeFromNowOn) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   ClockNode clock(robot);
   Linked linked(domain, {}, "COMPONENT robot NODE /robot\nCOMPONENT simulator NODE /simulator\n");
@@ -1280,17 +1298,17 @@ TEST(Link, LearnsThatANodeUsesSimulatedTimeFromNowOn) {
   std::this_thread::sleep_for(2s);  // it has said that its time is the real one
   clock.runs = false;
   use_simulated_time(robot);
-  std::unique_ptr<RawSubscription> follows;
+  std::unique_ptr<ros2::RawSubscription> follows;
   robot.context.run([&] {
-    auto made = RawSubscription::create(robot.managed->node().entry(), SimulatedClock::kTopic,
-                                        "rosgraph_msgs/msg/Clock", {}, PayloadUse::kWhole,
-                                        [](const Sample&) {});
+    auto made = ros2::RawSubscription::create(robot.managed->node().entry(), SimulatedClock::kTopic,
+                                              "rosgraph_msgs/msg/Clock", {},
+                                              ros2::PayloadUse::kWhole, [](const ros2::Sample&) {});
     ASSERT_TRUE(made);
     follows = std::move(*made);
   });
   EXPECT_TRUE(linked.wait<TimeHeld>([&](const TimeHeld& t) { return t.is_held; }));
   robot.context.run([&] {
-    const msg::Parameter real{"use_sim_time", to_parameter_value(Value(false))};
+    const ros2::msg::Parameter real{"use_sim_time", ros2::to_parameter_value(Value(false))};
     EXPECT_TRUE(robot.managed->node().parameters().set(std::array{real}).successful);
     follows.reset();
   });
@@ -1298,7 +1316,7 @@ TEST(Link, LearnsThatANodeUsesSimulatedTimeFromNowOn) {
 }
 
 TEST(Link, SaysThatNodesWaitForAClockThatNobodyPublishes) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Robot robot(domain);
   use_simulated_time(robot);
   Linked linked(domain);
@@ -1309,4 +1327,4 @@ TEST(Link, SaysThatNodesWaitForAClockThatNobodyPublishes) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

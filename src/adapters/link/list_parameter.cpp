@@ -5,10 +5,10 @@
 #include "base/value_list.h"
 #include "ros2/parameter_store.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
-using msg::ParameterType;
+using ros2::msg::ParameterType;
 
 template <class Elements>
 std::vector<Value> values_of(const Elements& elements) {
@@ -45,12 +45,12 @@ bool take_bytes(const std::vector<Value>& list, std::vector<std::uint8_t>& bytes
 
 }  // namespace
 
-bool is_list(const msg::ParameterValue& value) {
+bool is_list(const ros2::msg::ParameterValue& value) {
   return value.type >= static_cast<std::uint8_t>(ParameterType::kByteArray) &&
          value.type <= static_cast<std::uint8_t>(ParameterType::kStringArray);
 }
 
-std::optional<Value> value_or_list(const msg::ParameterValue& value) {
+std::optional<Value> value_or_list(const ros2::msg::ParameterValue& value) {
   switch (static_cast<ParameterType>(value.type)) {
     case ParameterType::kByteArray: {
       const std::vector<std::int64_t> bytes(value.byte_array_value.begin(),
@@ -69,14 +69,15 @@ std::optional<Value> value_or_list(const msg::ParameterValue& value) {
     case ParameterType::kStringArray:
       return text_of_list(values_of(value.string_array_value));
     default:
-      return to_value(value);
+      return ros2::to_value(value);
   }
 }
 
-std::optional<msg::ParameterValue> list_parameter(const std::string& text, std::uint8_t type) {
+std::optional<ros2::msg::ParameterValue> list_parameter(const std::string& text,
+                                                        std::uint8_t type) {
   const auto list = list_from_text(text);
   if (!list) return std::nullopt;
-  msg::ParameterValue out;
+  ros2::msg::ParameterValue out;
   out.type = type;
   const auto fits = [&] {
     switch (static_cast<ParameterType>(type)) {
@@ -97,4 +98,4 @@ std::optional<msg::ParameterValue> list_parameter(const std::string& text, std::
   return fits() ? std::optional(std::move(out)) : std::nullopt;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

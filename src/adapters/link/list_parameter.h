@@ -7,15 +7,15 @@
 #include "base/value.h"
 #include "ros2/messages.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-bool is_list(const msg::ParameterValue& value);
+bool is_list(const ros2::msg::ParameterValue& value);
 
 // A single value as it is; a list as its text. Nothing: not set.
-std::optional<Value> value_or_list(const msg::ParameterValue& value);
+std::optional<Value> value_or_list(const ros2::msg::ParameterValue& value);
 
 // The list that `text` means, for a parameter of this type (ParameterType). Nothing: it is none, or has
 // other elements.
-std::optional<msg::ParameterValue> list_parameter(const std::string& text, std::uint8_t type);
+std::optional<ros2::msg::ParameterValue> list_parameter(const std::string& text, std::uint8_t type);
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -4,7 +4,7 @@
 #include "ros2/messages.h"
 #include "ros2/services.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 constexpr Duration kPeriod = std::chrono::milliseconds(100);
@@ -14,7 +14,7 @@ constexpr Duration kPeriod = std::chrono::milliseconds(100);
 void ListeningProof::seek(Time until) {
   tasks_.post([this, until] {
     until_ = until;
-    looking_ = std::make_unique<Timer>(executor_, kPeriod, [this] { look(); });
+    looking_ = std::make_unique<ros2::Timer>(executor_, kPeriod, [this] { look(); });
   });
 }
 
@@ -31,16 +31,17 @@ void ListeningProof::look() {
 }
 
 void ListeningProof::ask(const Silent& silent, Duration patience) {
-  auto client = ServiceClient::create(
-      self_, {silent.publisher + "/get_parameters", std::string(srv::GetParameters::kType)},
-      qos::kParameterServices);
+  auto client = ros2::ServiceClient::create(
+      self_, {silent.publisher + "/get_parameters", std::string(ros2::srv::GetParameters::kType)},
+      rtps::qos::kParameterServices);
   if (!client) return;  // a secured domain need not allow it
   if (silent.participant) (*client)->ask_only(*silent.participant);
-  (*client)->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, patience,
-                  [this, topic = silent.topic](const CallResult& result) {
-                    if (result.outcome == CallOutcome::kAnswered) inbox_.put(ListenerKnown{topic});
+  (*client)->call(rtps::encode(ros2::srv::GetParameters::Request{}), ros2::Repeat::kUntilAnswered,
+                  patience, [this, topic = silent.topic](const ros2::CallResult& result) {
+                    if (result.outcome == ros2::CallOutcome::kAnswered)
+                      inbox_.put(ListenerKnown{topic});
                   });
   asked_.emplace(silent.topic, std::move(*client));
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

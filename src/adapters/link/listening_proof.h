@@ -19,21 +19,21 @@
 #include "ros2/service_client.h"
 #include "ros2/timer.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // On the executor's thread, but for seek(), which any thread may call.
 class ListeningProof {
  public:
   struct Silent {
     TopicId topic;
-    std::string publisher;                  // the only node that publishes it
-    std::optional<GuidPrefix> participant;  // that holds it
+    std::string publisher;                        // the only node that publishes it
+    std::optional<rtps::GuidPrefix> participant;  // that holds it
   };
   // Gives the topics that are listened to and of which nothing came.
   using FindSilent = std::function<std::vector<Silent>()>;
 
   // All outlive it.
-  ListeningProof(NodeEntry& self, Executor& executor, Inbox& inbox, FindSilent find)
+  ListeningProof(ros2::NodeEntry& self, ros2::Executor& executor, Inbox& inbox, FindSilent find)
       : self_(self), executor_(executor), inbox_(inbox), find_(std::move(find)), tasks_(executor) {}
 
   // Asks until then.
@@ -43,14 +43,14 @@ class ListeningProof {
   void look();
   void ask(const Silent& silent, Duration patience);
 
-  NodeEntry& self_;
-  Executor& executor_;
+  ros2::NodeEntry& self_;
+  ros2::Executor& executor_;
   Inbox& inbox_;
   const FindSilent find_;
-  std::map<TopicId, std::unique_ptr<ServiceClient>> asked_;
+  std::map<TopicId, std::unique_ptr<ros2::ServiceClient>> asked_;
   Time until_ = kLongAgo;
-  std::unique_ptr<Timer> looking_;
-  TaskGroup tasks_;
+  std::unique_ptr<ros2::Timer> looking_;
+  ros2::TaskGroup tasks_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

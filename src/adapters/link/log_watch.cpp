@@ -7,7 +7,7 @@
 #include "base/live_clock.h"
 #include "ros2/messages.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 std::vector<std::optional<LogLevel>> counted_log_levels(const RuleSet& rules) {
   std::vector<std::optional<LogLevel>> levels(rules.components.size());
@@ -19,22 +19,23 @@ std::vector<std::optional<LogLevel>> counted_log_levels(const RuleSet& rules) {
   return levels;
 }
 
-Expected<std::unique_ptr<LogWatch>> LogWatch::create(NodeEntry& self, const RuleSet& rules,
+Expected<std::unique_ptr<LogWatch>> LogWatch::create(ros2::NodeEntry& self, const RuleSet& rules,
                                                      Inbox& inbox, ComponentOf component_of) {
   std::unique_ptr<LogWatch> watch(new LogWatch(self, rules, inbox, std::move(component_of)));
   const auto is_counted = [](const auto& level) { return level.has_value(); };
   if (std::ranges::none_of(watch->wanted_, is_counted)) return watch;
   // Best effort: a reader that is late must not hold a node back that logs.
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 100};
-  auto subscription = RawSubscription::create(
-      self, "/rosout", msg::Log::kType, kQos, PayloadUse::kWholeLater,
-      [raw = watch.get()](const Sample& sample) { raw->on_sample(sample); });
+  constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 100};
+  auto subscription = ros2::RawSubscription::create(
+      self, "/rosout", ros2::msg::Log::kType, kQos, ros2::PayloadUse::kWholeLater,
+      [raw = watch.get()](const ros2::Sample& sample) { raw->on_sample(sample); });
   if (!subscription) return Error{subscription.error()};
   watch->subscription_ = std::move(*subscription);
   return watch;
 }
 
-LogWatch::LogWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of)
+LogWatch::LogWatch(ros2::NodeEntry& self, const RuleSet& rules, Inbox& inbox,
+                   ComponentOf component_of)
     : self_(self),
       inbox_(inbox),
       component_of_(std::move(component_of)),
@@ -43,11 +44,11 @@ LogWatch::LogWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, Componen
   for (const auto& level : wanted_) least_ = std::min(level.value_or(least_), least_);
 }
 
-void LogWatch::on_sample(const Sample& sample) {
+void LogWatch::on_sample(const ros2::Sample& sample) {
   // culprit's own messages are not read.
-  const Guid writer = sample.identity.writer;
+  const rtps::Guid writer = sample.identity.writer;
   if (writer.prefix() == self_.context().participant().guid().prefix()) return;
-  const auto line = decode<msg::Log>(sample.payload);
+  const auto line = rtps::decode<ros2::msg::Log>(sample.payload);
   if (!line) return;
   const LogLevel level = log_level(line->level);
   if (level < least_) return;
@@ -67,7 +68,7 @@ void LogWatch::look_up() {
   const Time now = live_now();
   std::deque<WaitingLines::Line> unclaimed;
   for (const WaitingLines::Line& line : lines) {
-    const Graph::Owner owner = self_.context().graph().owner_of(line.writer);
+    const ros2::Graph::Owner owner = self_.context().graph().owner_of(line.writer);
     if (owner.node.empty()) {
       if (now < later(line.at, kClaimed)) unclaimed.push_back(line);
       continue;
@@ -80,7 +81,7 @@ void LogWatch::look_up() {
   const MutexLock lock(mutex_);
   for (const WaitingLines::Line& line : unclaimed) waiting_.add(line);
   if (std::exchange(is_posted_, true)) return;
-  tasks_.post_at(Executor::Clock::now() + kRetry, [this] { look_up(); });
+  tasks_.post_at(ros2::Executor::Clock::now() + kRetry, [this] { look_up(); });
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

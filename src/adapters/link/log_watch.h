@@ -19,7 +19,7 @@
 #include "link/waiting_lines.h"
 #include "ros2/subscription.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // By component: the least level of the lines that rules count; empty: they count none.
 std::vector<std::optional<LogLevel>> counted_log_levels(const RuleSet& rules);
@@ -29,7 +29,7 @@ class LogWatch {
   // Subscribes if a rule counts lines. All references must outlive the watch. `component_of` is called on the
   // executor's thread.
   using ComponentOf = std::function<std::optional<ComponentId>(const std::string& node)>;
-  static Expected<std::unique_ptr<LogWatch>> create(NodeEntry& self, const RuleSet& rules,
+  static Expected<std::unique_ptr<LogWatch>> create(ros2::NodeEntry& self, const RuleSet& rules,
                                                     Inbox& inbox, ComponentOf component_of);
 
  private:
@@ -37,11 +37,11 @@ class LogWatch {
   static constexpr Duration kRetry = std::chrono::milliseconds(200);
   static constexpr std::size_t kMostWaiting = 1000;
 
-  LogWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of);
-  void on_sample(const Sample& sample);
+  LogWatch(ros2::NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of);
+  void on_sample(const ros2::Sample& sample);
   void look_up();
 
-  NodeEntry& self_;
+  ros2::NodeEntry& self_;
   Inbox& inbox_;
   const ComponentOf component_of_;
   const std::vector<std::optional<LogLevel>> wanted_;
@@ -49,8 +49,8 @@ class LogWatch {
   Mutex mutex_;  // receive threads take it: nothing of the middleware is called with it
   WaitingLines waiting_ CULPRIT_GUARDED_BY(mutex_){kMostWaiting};
   bool is_posted_ CULPRIT_GUARDED_BY(mutex_) = false;  // look_up()
-  TaskGroup tasks_;                                    // outlives the one that posts to it
-  std::unique_ptr<RawSubscription> subscription_;
+  ros2::TaskGroup tasks_;                              // outlives the one that posts to it
+  std::unique_ptr<ros2::RawSubscription> subscription_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -13,7 +13,7 @@
 #include "base/ros_names.h"
 #include "ros2/service_mapping.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 std::optional<std::int64_t> number_in(std::string_view text) {
@@ -40,7 +40,7 @@ std::vector<std::string> split(std::string_view text) {
 }
 
 // In hexadecimal. `kind`: so that none can be taken for the other.
-std::string proof_of(const char* kind, std::string_view text, const GuidPrefix& participant,
+std::string proof_of(const char* kind, std::string_view text, const rtps::GuidPrefix& participant,
                      const std::string& key) {
   std::string signed_text = std::string("culprit ") + kind + "\n" + std::string(text);
   signed_text.append(reinterpret_cast<const char*>(participant.bytes.data()),
@@ -110,10 +110,12 @@ bool ManagerLease::concerns_us(const Other& other) const {
                      [&](const std::string& node) { return has_node(own_.nodes, node); });
 }
 
-void ManagerLease::apply(const DiscoveryEvent& event, Time now) {
-  if (const auto* endpoint = std::get_if<EndpointInfo>(&event)) {
+void ManagerLease::apply(const ros2::DiscoveryEvent& event, Time now) {
+  if (const auto* endpoint = std::get_if<rtps::EndpointInfo>(&event)) {
     if (endpoint->topic != kTopic || endpoint->guid.is_reader()) return;
-    const auto value = [&](const char* key) { return user_data_value(endpoint->user_data, key); };
+    const auto value = [&](const char* key) {
+      return ros2::user_data_value(endpoint->user_data, key);
+    };
     const auto since = number_in(value("since"));
     const auto id = number_in(value("id"));
     const auto term = number_in(value("term"));
@@ -121,7 +123,7 @@ void ManagerLease::apply(const DiscoveryEvent& event, Time now) {
     Other other{std::string(value("robot")), *term, {*since, *id}, split(value("nodes")), false};
     if (!concerns_us(other)) return;
     const std::string claim = claim_text(other.robot, *since, *id, *term, value("nodes"));
-    const GuidPrefix prefix = endpoint->guid.prefix();
+    const rtps::GuidPrefix prefix = endpoint->guid.prefix();
     other.is_proven =
         !own_.key.empty() && are_same(value("proof"), proof_of(kClaim, claim, prefix, own_.key));
     if (!other.is_proven) {
@@ -136,9 +138,9 @@ void ManagerLease::apply(const DiscoveryEvent& event, Time now) {
       if (other.robot == own_.robot) highest_term_ = std::max(highest_term_, other.term);
     }
     others_[endpoint->guid] = std::move(other);
-  } else if (const auto* gone = std::get_if<EndpointGone>(&event)) {
+  } else if (const auto* gone = std::get_if<rtps::EndpointGone>(&event)) {
     others_.erase(gone->guid);
-  } else if (const auto* left = std::get_if<ParticipantGone>(&event)) {
+  } else if (const auto* left = std::get_if<ros2::ParticipantGone>(&event)) {
     std::erase_if(others_,
                   [&](const auto& other) { return other.first.prefix() == left->guid.prefix(); });
     lives_.erase(left->guid.prefix());
@@ -203,7 +205,7 @@ std::vector<std::string> ManagerLease::state_parts(Time now) {
 
 // `part`: the text after the proof. Its clock is of when it was written, so that the way here is
 // all that the shift is wrong by.
-void ManagerLease::hear_state(const GuidPrefix& participant, std::string_view proof,
+void ManagerLease::hear_state(const rtps::GuidPrefix& participant, std::string_view proof,
                               std::string_view part, Time now) {
   if (!are_same(proof, proof_of(kState, part, participant, own_.key))) return;
   std::string_view rest = part;
@@ -234,7 +236,7 @@ void ManagerLease::hear_state(const GuidPrefix& participant, std::string_view pr
   round.parts.clear();  // complete
 }
 
-void ManagerLease::hear(const GuidPrefix& participant, std::string_view beat, Time now) {
+void ManagerLease::hear(const rtps::GuidPrefix& participant, std::string_view beat, Time now) {
   const auto life = lives_.find(participant);
   const auto other = std::find_if(others_.begin(), others_.end(), [&](const auto& each) {
     return each.first.prefix() == participant && each.second.is_proven;
@@ -262,7 +264,7 @@ Time ManagerLease::sure_until(Time now) const {
 }
 
 // While nothing is received, no other culprit counts as exited.
-bool ManagerLease::is_alive(const GuidPrefix& participant, Time now) const {
+bool ManagerLease::is_alive(const rtps::GuidPrefix& participant, Time now) const {
   const bool slept = now > later(ticked_, kAway);
   const auto life = lives_.find(participant);
   return slept || life == lives_.end() ||
@@ -271,9 +273,9 @@ bool ManagerLease::is_alive(const GuidPrefix& participant, Time now) const {
 
 // A claim of the same age is of this process, which rejoins the domain at times.
 template <class Predicate, class Order>
-std::optional<GuidPrefix> ManagerLease::first(Time now, const IsLeftOut& is_left_out,
-                                              Predicate is_rival, Order order) const {
-  std::optional<GuidPrefix> found;
+std::optional<rtps::GuidPrefix> ManagerLease::first(Time now, const IsLeftOut& is_left_out,
+                                                    Predicate is_rival, Order order) const {
+  std::optional<rtps::GuidPrefix> found;
   auto best = order(Other{own_.robot, own_.term, own_age(), {}, true});
   for (const auto& [guid, other] : others_) {
     if (!other.is_proven || other.age == own_age() || order(other) >= best || !is_rival(other))
@@ -286,22 +288,22 @@ std::optional<GuidPrefix> ManagerLease::first(Time now, const IsLeftOut& is_left
   return found;
 }
 
-std::optional<GuidPrefix> ManagerLease::elder(Time now, const IsLeftOut& is_left_out) const {
+std::optional<rtps::GuidPrefix> ManagerLease::elder(Time now, const IsLeftOut& is_left_out) const {
   return first(
       now, is_left_out, [&](const Other& other) { return other.robot == own_.robot; },
       [](const Other& other) { return other.rank(); });
 }
 
-std::optional<GuidPrefix> ManagerLease::elder_at(const std::string& node, Time now,
-                                                 const IsLeftOut& is_left_out) const {
+std::optional<rtps::GuidPrefix> ManagerLease::elder_at(const std::string& node, Time now,
+                                                       const IsLeftOut& is_left_out) const {
   return first(
       now, is_left_out,
       [&](const Other& other) { return other.robot != own_.robot && has_node(other.nodes, node); },
       [](const Other& other) { return other.age; });
 }
 
-std::vector<GuidPrefix> ManagerLease::strangers(const IsLeftOut& is_left_out) const {
-  std::vector<GuidPrefix> found;
+std::vector<rtps::GuidPrefix> ManagerLease::strangers(const IsLeftOut& is_left_out) const {
+  std::vector<rtps::GuidPrefix> found;
   for (const auto& [guid, other] : others_) {
     const bool is_own = other.age == own_age();
     if (other.is_proven || is_own || (is_left_out && is_left_out(guid.prefix()))) continue;
@@ -310,4 +312,4 @@ std::vector<GuidPrefix> ManagerLease::strangers(const IsLeftOut& is_left_out) co
   return found;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -43,7 +43,7 @@
 #include "base/time.h"
 #include "ros2/participant.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 struct LeaseClaim {
   std::string robot;
@@ -75,11 +75,11 @@ class ManagerLease {
   static constexpr std::size_t kLongestState = kMostParts * kLongestPart;
 
   // `self` is the participant that announces it.
-  ManagerLease(LeaseClaim own, GuidPrefix self) : own_(std::move(own)), self_(self) {}
+  ManagerLease(LeaseClaim own, rtps::GuidPrefix self) : own_(std::move(own)), self_(self) {}
 
   // The user data of the own writers: one for each, for not all nodes may fit into one.
   std::vector<std::string> announcements() const;
-  void apply(const DiscoveryEvent& event, Time now);
+  void apply(const ros2::DiscoveryEvent& event, Time now);
 
   // To be called every kPeriod. `hears`: messages of others arrive now. Gives the beat to be
   // written; nothing if no other culprit would believe it, or none should rely on this one now.
@@ -99,7 +99,7 @@ class ManagerLease {
   // state from others no longer count. Does not announce anything itself.
   void take_over(std::int64_t term);
   // A message that a writer of this participant wrote.
-  void hear(const GuidPrefix& participant, std::string_view beat, Time now);
+  void hear(const rtps::GuidPrefix& participant, std::string_view beat, Time now);
   // Until when it is certain that no other culprit has taken over from this manager without our
   // knowing it. Not later than `now`: it is not.
   Time sure_until(Time now) const;
@@ -110,16 +110,16 @@ class ManagerLease {
   std::int64_t highest_term() const { return highest_term_; }
 
   // Participants that are left out: those of this machine.
-  using IsLeftOut = std::function<bool(const GuidPrefix&)>;
+  using IsLeftOut = std::function<bool(const rtps::GuidPrefix&)>;
 
   // The participant of the culprit that goes before this one; nothing if this one manages.
-  std::optional<GuidPrefix> elder(Time now, const IsLeftOut& is_left_out = {}) const;
+  std::optional<rtps::GuidPrefix> elder(Time now, const IsLeftOut& is_left_out = {}) const;
   // The participant of a culprit of another robot that goes before this one at the node of this
   // full name.
-  std::optional<GuidPrefix> elder_at(const std::string& node, Time now,
-                                     const IsLeftOut& is_left_out = {}) const;
+  std::optional<rtps::GuidPrefix> elder_at(const std::string& node, Time now,
+                                           const IsLeftOut& is_left_out = {}) const;
   // The participants that claim this robot, or a node of it, without a proof.
-  std::vector<GuidPrefix> strangers(const IsLeftOut& is_left_out = {}) const;
+  std::vector<rtps::GuidPrefix> strangers(const IsLeftOut& is_left_out = {}) const;
 
  private:
   static constexpr std::size_t kMostStrangers = 100;  // that are kept track of
@@ -146,22 +146,22 @@ class ManagerLease {
     std::vector<std::optional<std::string>> parts;
   };
 
-  void hear_state(const GuidPrefix& participant, std::string_view proof, std::string_view part,
-                  Time now);
+  void hear_state(const rtps::GuidPrefix& participant, std::string_view proof,
+                  std::string_view part, Time now);
   Age own_age() const { return {own_.since, own_.id}; }
   bool concerns_us(const Other& other) const;
-  bool is_alive(const GuidPrefix& participant, Time now) const;
+  bool is_alive(const rtps::GuidPrefix& participant, Time now) const;
   template <class Predicate, class Order>
-  std::optional<GuidPrefix> first(Time now, const IsLeftOut& is_left_out, Predicate is_rival,
-                                  Order order) const;
+  std::optional<rtps::GuidPrefix> first(Time now, const IsLeftOut& is_left_out, Predicate is_rival,
+                                        Order order) const;
 
   LeaseClaim own_;
-  GuidPrefix self_;
-  std::map<Guid, Other> others_;      // that concern us
-  std::map<GuidPrefix, Life> lives_;  // of those that are proven
+  rtps::GuidPrefix self_;
+  std::map<rtps::Guid, Other> others_;      // that concern us
+  std::map<rtps::GuidPrefix, Life> lives_;  // of those that are proven
   std::int64_t highest_term_ = 0;
   std::optional<std::string> told_orders_;
-  std::map<GuidPrefix, Round> rounds_;  // of those that are proven
+  std::map<rtps::GuidPrefix, Round> rounds_;  // of those that are proven
   std::optional<ToldState> told_state_;
   std::string state_;          // that we send
   bool is_state_new_ = false;  // and did not begin to
@@ -179,4 +179,4 @@ class ManagerLease {
   Time listens_until_ = kLongAgo;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using testing::ElementsAre;
@@ -15,21 +15,21 @@ constexpr Time kNow{1h};
 constexpr const char* kKey = "a key that only friends have";
 
 // The writer of a participant.
-Guid writer(std::uint8_t participant) {
-  Guid guid;
+rtps::Guid writer(std::uint8_t participant) {
+  rtps::Guid guid;
   guid.bytes[0] = participant;
   guid.bytes[15] = 3;
   return guid;
 }
 
-EndpointInfo says(std::uint8_t participant, const std::string& user_data) {
+rtps::EndpointInfo says(std::uint8_t participant, const std::string& user_data) {
   return {.guid = writer(participant),
           .topic = ManagerLease::kTopic,
           .type = ManagerLease::kType,
           .user_data = user_data,
           .qos = {}};
 }
-EndpointInfo claim(std::uint8_t participant, LeaseClaim what) {
+rtps::EndpointInfo claim(std::uint8_t participant, LeaseClaim what) {
   if (what.key.empty()) what.key = kKey;
   const ManagerLease lease(what, writer(participant).prefix());
   return says(participant, lease.announcements().front());
@@ -70,11 +70,11 @@ TEST(ManagerLease, PassesOnWhenTheElderIsGone) {
   ManagerLease lease = lease_of(100);
   lease.apply(claim(1, {"drone", 98, 1}), kNow);
   lease.apply(claim(2, {"drone", 99, 1}), kNow);
-  lease.apply(EndpointGone{writer(1)}, kNow);
+  lease.apply(rtps::EndpointGone{writer(1)}, kNow);
   EXPECT_EQ(lease.elder(kNow), writer(2).prefix());
-  Guid participant = writer(2);
+  rtps::Guid participant = writer(2);
   participant.bytes[15] = 0xc1;
-  lease.apply(ParticipantGone{participant}, kNow);
+  lease.apply(ros2::ParticipantGone{participant}, kNow);
   EXPECT_FALSE(lease.elder(kNow));
 }
 
@@ -84,7 +84,7 @@ TEST(ManagerLease, IsOfOneRobotOnlyAndIgnoresNonsense) {
   lease.apply(says(2, "robot=drone;since=early;id=1;term=0;"), kNow);
   lease.apply(says(3, "robot=drone;since=1x;id=1;term=0;"), kNow);
   lease.apply(says(4, ""), kNow);
-  EndpointInfo other = claim(6, {"drone", 1, 1});
+  rtps::EndpointInfo other = claim(6, {"drone", 1, 1});
   other.topic = "rt/chatter";
   lease.apply(other, kNow);
   EXPECT_FALSE(lease.elder(kNow));
@@ -101,7 +101,7 @@ TEST(ManagerLease, IsNotLostToAStranger) {
   lease.apply(says(4, claim(9, {"drone", 1, 1}).user_data), kNow);
   EXPECT_FALSE(lease.elder(kNow));
   EXPECT_EQ(lease.strangers().size(), 4u);
-  EXPECT_EQ(lease.strangers([](const GuidPrefix& p) { return p.bytes[0] != 2; }).size(), 1u);
+  EXPECT_EQ(lease.strangers([](const rtps::GuidPrefix& p) { return p.bytes[0] != 2; }).size(), 1u);
 }
 
 TEST(ManagerLease, IsNotTakenFromTheElderByABorrowerOfItsName) {
@@ -131,7 +131,7 @@ TEST(ManagerLease, OfANodeIsOfTheOneThatBeganFirstWhateverItsRobotIsCalled) {
   EXPECT_FALSE(lease.elder_at("/stern/lidar", kNow));
   EXPECT_FALSE(lease.elder_at("/wheel", kNow));
   EXPECT_FALSE(
-      lease.elder_at("/camera", kNow, [](const GuidPrefix& p) { return p.bytes[0] == 1; }));
+      lease.elder_at("/camera", kNow, [](const rtps::GuidPrefix& p) { return p.bytes[0] == 1; }));
 }
 
 TEST(ManagerLease, NamesEveryNodeOfARobotHoweverMany) {
@@ -144,7 +144,7 @@ TEST(ManagerLease, NamesEveryNodeOfARobotHoweverMany) {
   EXPECT_GT(said.size(), 1u);
   for (std::size_t i = 0; i < said.size(); ++i) {
     EXPECT_LT(said[i].size(), 1024u);
-    EndpointInfo info = says(1, said[i]);
+    rtps::EndpointInfo info = says(1, said[i]);
     info.guid.bytes[14] = static_cast<std::uint8_t>(i);
     lease.apply(info, kNow);
   }
@@ -158,13 +158,15 @@ struct Machine {
         claim{"drone", since, since, {}, kKey, term},
         lease(claim, prefix) {}
 
-  EndpointInfo announcement() const { return says(prefix.bytes[0], lease.announcements().front()); }
+  rtps::EndpointInfo announcement() const {
+    return says(prefix.bytes[0], lease.announcements().front());
+  }
   void ticks(Time now, Machine* other) {
     const auto beat = lease.beat(now, hears, manages, orders);
     if (beat && other != nullptr && other->hears) other->lease.hear(prefix, *beat, now);
   }
 
-  GuidPrefix prefix;
+  rtps::GuidPrefix prefix;
   LeaseClaim claim;
   ManagerLease lease;
   bool hears = true;
@@ -289,7 +291,7 @@ TEST_F(TwoMachines, TakeOverAsTheSameParticipantAndGoBeforeTheOneThatWasSlow) {
   second.manages = true;
   EXPECT_FALSE(second.lease.told_orders()) << "the orders to the exited one are in force by now";
   // Its new claim is added to the one that it had.
-  EndpointInfo anew = second.announcement();
+  rtps::EndpointInfo anew = second.announcement();
   anew.guid.bytes[14] = 7;
   first.lease.apply(anew, now);
   pass(1s);
@@ -405,4 +407,4 @@ TEST(ManagerLease, WithoutAKeyNothingIsSaidAndNothingWaitedFor) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 constexpr std::int8_t kUnknown = -1;
@@ -14,7 +14,7 @@ char letter_of(std::int8_t cell) {
 }
 
 // The most occupied cell of a square of the message.
-std::int8_t most_occupied(const msg::OccupancyGrid& grid, std::size_t column, std::size_t row,
+std::int8_t most_occupied(const ros2::msg::OccupancyGrid& grid, std::size_t column, std::size_t row,
                           std::size_t side) {
   std::int8_t most = kUnknown;
   const std::size_t last_row = std::min<std::size_t>(row + side, grid.info.height);
@@ -29,13 +29,13 @@ std::int8_t most_occupied(const msg::OccupancyGrid& grid, std::size_t column, st
 // Every n-th, so that no more than kMostPoints are left.
 std::size_t stride_of(std::size_t count) { return count / (kMostPoints + 1) + 1; }
 
-bool is_finite(const msg::Vector3& v) {
+bool is_finite(const ros2::msg::Vector3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 }  // namespace
 
-Expected<GridPicture> picture_of(const msg::OccupancyGrid& grid) {
+Expected<GridPicture> picture_of(const ros2::msg::OccupancyGrid& grid) {
   if (grid.header.frame_id.size() > FrameTree::kLongestName)
     return Error{"the name of its frame is too long"};
   const auto& [time, resolution, width, height, origin] = grid.info;
@@ -60,12 +60,12 @@ Expected<GridPicture> picture_of(const msg::OccupancyGrid& grid) {
   return picture;
 }
 
-std::vector<PlanePoint> points_of(const msg::Path& path, const msg::Transform& place) {
+std::vector<PlanePoint> points_of(const ros2::msg::Path& path, const ros2::msg::Transform& place) {
   std::vector<PlanePoint> points;
   const std::size_t count = path.poses.size();
   const auto add = [&](std::size_t i) {
-    const msg::Point& at = path.poses[i].pose.position;
-    const msg::Vector3 on_map = moved_by(place, {at.x, at.y, at.z});
+    const ros2::msg::Point& at = path.poses[i].pose.position;
+    const ros2::msg::Vector3 on_map = moved_by(place, {at.x, at.y, at.z});
     if (is_finite(on_map)) points.push_back({on_map.x, on_map.y});
   };
   const std::size_t stride = stride_of(count);
@@ -74,7 +74,8 @@ std::vector<PlanePoint> points_of(const msg::Path& path, const msg::Transform& p
   return points;
 }
 
-std::vector<PlanePoint> points_of(const msg::LaserScan& scan, const msg::Transform& place) {
+std::vector<PlanePoint> points_of(const ros2::msg::LaserScan& scan,
+                                  const ros2::msg::Transform& place) {
   std::vector<PlanePoint> points;
   const std::size_t stride = stride_of(scan.ranges.size());
   for (std::size_t i = 0; i < scan.ranges.size(); i += stride) {
@@ -83,11 +84,11 @@ std::vector<PlanePoint> points_of(const msg::LaserScan& scan, const msg::Transfo
                       range < static_cast<double>(scan.range_max);  // false for NaN
     const double angle = static_cast<double>(scan.angle_min) +
                          static_cast<double>(i) * static_cast<double>(scan.angle_increment);
-    const msg::Vector3 on_map =
+    const ros2::msg::Vector3 on_map =
         moved_by(place, {range * std::cos(angle), range * std::sin(angle), 0});
     if (hits && is_finite(on_map)) points.push_back({on_map.x, on_map.y});
   }
   return points;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

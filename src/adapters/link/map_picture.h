@@ -10,7 +10,7 @@
 #include "base/expected.h"
 #include "link/frame_tree.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 struct GridPicture {
   static constexpr std::uint32_t kMostCells =
@@ -18,14 +18,14 @@ struct GridPicture {
 
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  double resolution = 0;      // m a cell
-  std::uint32_t coarser = 1;  // how many cells of the message are one of these, in each direction
-  msg::Transform origin;      // of the corner of the first cell, in the map's frame
+  double resolution = 0;        // m a cell
+  std::uint32_t coarser = 1;    // how many cells of the message are one of these, in each direction
+  ros2::msg::Transform origin;  // of the corner of the first cell, in the map's frame
   // Row by row: '0' free to '9' occupied, '?' unknown. A cell is as occupied as the most occupied one that it stands for.
   std::string cells;
 };
 // Errors: the message contradicts itself, or has no area.
-Expected<GridPicture> picture_of(const msg::OccupancyGrid& grid);
+Expected<GridPicture> picture_of(const ros2::msg::OccupancyGrid& grid);
 
 struct PlanePoint {
   double x = 0;  // m, in the map's frame
@@ -34,9 +34,10 @@ struct PlanePoint {
 inline constexpr std::size_t kMostPoints =
     720;  // of a path or scan; of longer ones every n-th is drawn
 // `place`: that of the message's frame in the map's. The last pose is always among them.
-std::vector<PlanePoint> points_of(const msg::Path& path, const msg::Transform& place);
+std::vector<PlanePoint> points_of(const ros2::msg::Path& path, const ros2::msg::Transform& place);
 // Where its beams hit something.
-std::vector<PlanePoint> points_of(const msg::LaserScan& scan, const msg::Transform& place);
+std::vector<PlanePoint> points_of(const ros2::msg::LaserScan& scan,
+                                  const ros2::msg::Transform& place);
 
 struct MapPicture {
   struct Robot {
@@ -61,4 +62,4 @@ struct MapPicture {
   std::vector<std::string> troubles;  // sentences about the parts that are not drawn
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -6,13 +6,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using testing::HasSubstr;
 
-msg::OccupancyGrid grid(std::uint32_t width, std::uint32_t height, std::vector<std::int8_t> cells) {
-  msg::OccupancyGrid grid;
+ros2::msg::OccupancyGrid grid(std::uint32_t width, std::uint32_t height,
+                              std::vector<std::int8_t> cells) {
+  ros2::msg::OccupancyGrid grid;
   grid.info.resolution = 0.5F;
   grid.info.width = width;
   grid.info.height = height;
@@ -47,7 +48,7 @@ TEST(MapPicture, DrawsALargeMapCoarserAndKeepsItsWalls) {
 }
 
 TEST(MapPicture, RefusesAMessageThatContradictsItself) {
-  const auto refusal = [](const msg::OccupancyGrid& bad) {
+  const auto refusal = [](const ros2::msg::OccupancyGrid& bad) {
     const auto picture = picture_of(bad);
     return picture ? "it is drawn" : picture.error();
   };
@@ -64,18 +65,18 @@ TEST(MapPicture, RefusesAMessageThatContradictsItself) {
 }
 
 TEST(MapPicture, ThinsALongPathButKeepsItsGoal) {
-  msg::Path path;
+  ros2::msg::Path path;
   for (int i = 0; i < 10'000; ++i) path.poses.push_back({{}, {{1.0 * i, 0, 0}, {}}});
   const auto points = points_of(path, {{0, 5, 0}, {}});
   EXPECT_LE(points.size(), kMostPoints + 1);
   EXPECT_DOUBLE_EQ(points.front().x, 0);
   EXPECT_DOUBLE_EQ(points.back().x, 9'999);
   EXPECT_DOUBLE_EQ(points.back().y, 5) << "in the map's frame";
-  EXPECT_TRUE(points_of(msg::Path{}, {}).empty());
+  EXPECT_TRUE(points_of(ros2::msg::Path{}, {}).empty());
 }
 
 TEST(MapPicture, DrawsTheBeamsThatHit) {
-  msg::LaserScan scan;
+  ros2::msg::LaserScan scan;
   scan.angle_min = 0;
   scan.angle_increment = static_cast<float>(std::numbers::pi / 2);
   scan.range_min = 0.1F;
@@ -90,4 +91,4 @@ TEST(MapPicture, DrawsTheBeamsThatHit) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

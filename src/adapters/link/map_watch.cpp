@@ -7,7 +7,7 @@
 #include "base/live_clock.h"
 #include "base/name_grammar.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 constexpr std::size_t kMostRobots = 16;
@@ -20,9 +20,9 @@ struct Usual {
   std::string_view type;
   std::string_view name;
 };
-constexpr std::array kUsual = {Usual{msg::OccupancyGrid::kType, "map"},
-                               Usual{msg::Path::kType, "plan"},
-                               Usual{msg::LaserScan::kType, "scan"}};
+constexpr std::array kUsual = {Usual{ros2::msg::OccupancyGrid::kType, "map"},
+                               Usual{ros2::msg::Path::kType, "plan"},
+                               Usual{ros2::msg::LaserScan::kType, "scan"}};
 
 // The topics of a type, the usual one first.
 std::vector<MapWatch::Topic> topics_of(const std::vector<MapWatch::Topic>& all,
@@ -50,24 +50,28 @@ void MapWatch::follow(const std::vector<Topic>& topics, const std::string& wante
     for (std::size_t i = 0; i < std::min(found.size(), kMostTopics); ++i)
       topics_.push_back(found[i].name);
   }
-  const Qos latched{.durability = Durability::kTransientLocal, .depth = 100};
-  listen(kTransforms, {"/tf", std::string(msg::TFMessage::kType), qos::kSensorData});
-  listen(kStaticTransforms, {"/tf_static", std::string(msg::TFMessage::kType), latched});
+  const rtps::Qos latched{.durability = rtps::Durability::kTransientLocal, .depth = 100};
+  listen(kTransforms, {"/tf", std::string(ros2::msg::TFMessage::kType), rtps::qos::kSensorData});
+  listen(kStaticTransforms, {"/tf_static", std::string(ros2::msg::TFMessage::kType), latched});
 }
 
 // Best effort, so that it holds no publisher back; but only a reliable reader receives a latched map (topic_listener.h).
 void MapWatch::listen(Part part, const Topic& topic) {
   Source& source = sources_[part];
-  const bool latches = topic.offered.durability == Durability::kTransientLocal &&
-                       topic.offered.reliability == Reliability::kReliable;
+  const bool latches = topic.offered.durability == rtps::Durability::kTransientLocal &&
+                       topic.offered.reliability == rtps::Reliability::kReliable;
   if (source.subscription && source.topic == topic.name && source.latches == latches) return;
-  Qos qos{.reliability = Reliability::kBestEffort, .depth = 100, .keys = topic.offered.keys};
+  rtps::Qos qos{
+      .reliability = rtps::Reliability::kBestEffort, .depth = 100, .keys = topic.offered.keys};
   if (latches)
-    qos = {.durability = Durability::kTransientLocal, .depth = 100, .keys = topic.offered.keys};
+    qos = {
+        .durability = rtps::Durability::kTransientLocal, .depth = 100, .keys = topic.offered.keys};
   if (part <= kScan) qos.depth = 1;
-  auto made = RawSubscription::create(
-      self_, topic.name, topic.type, qos, PayloadUse::kWhole,
-      [this, part, name = topic.name](const Sample& sample) { on_sample(part, name, sample); });
+  auto made =
+      ros2::RawSubscription::create(self_, topic.name, topic.type, qos, ros2::PayloadUse::kWhole,
+                                    [this, part, name = topic.name](const ros2::Sample& sample) {
+                                      on_sample(part, name, sample);
+                                    });
   if (!made) return;
   source = {topic.name, latches, std::move(*made)};
 }
@@ -82,14 +86,14 @@ void MapWatch::stop() {
   decoded_ = 0;
 }
 
-void MapWatch::on_sample(Part part, const std::string& topic, const Sample& sample) {
+void MapWatch::on_sample(Part part, const std::string& topic, const ros2::Sample& sample) {
   if (part <= kScan) {
     const MutexLock lock(mutex_);
     const std::size_t most = part == kGrid ? kMostBytes : kMostBytesOfOthers;
     return newest_[part].keep(topic, sample.payload, most, live_now(), messages_);
   }
   if (sample.payload.size() > kMostBytesOfOthers) return;
-  const auto message = decode<msg::TFMessage>(sample.payload);
+  const auto message = rtps::decode<ros2::msg::TFMessage>(sample.payload);
   if (!message) return;
   const MutexLock lock(mutex_);
   frames_.add(*message, part == kTransforms ? FrameTree::Kind::kMoving : FrameTree::Kind::kStatic,
@@ -98,7 +102,7 @@ void MapWatch::on_sample(Part part, const std::string& topic, const Sample& samp
 
 // Without the lock: a large map takes a moment, and messages come meanwhile.
 void MapWatch::decode_grid(Time now) {
-  Bytes payload;
+  rtps::Bytes payload;
   std::uint64_t number = 0;
   {
     const MutexLock lock(mutex_);
@@ -108,7 +112,7 @@ void MapWatch::decode_grid(Time now) {
     number = decoded_ = newest.number;
     decoded_at_ = now;
   }
-  const auto message = decode<msg::OccupancyGrid>(payload);
+  const auto message = rtps::decode<ros2::msg::OccupancyGrid>(payload);
   Expected<GridPicture> grid = message ? picture_of(*message) : Error{"it is cut off"};
   const MutexLock lock(mutex_);
   if (number != decoded_) return;
@@ -135,8 +139,8 @@ MapPicture MapWatch::picture(std::uint64_t known, Time now) {
   }
   if (known != decoded_) picture.grid = *grid_;
   add_robots(picture, now);
-  add_line<msg::Path>(picture, picture.path, newest_[kPath], now);
-  add_line<msg::LaserScan>(picture, picture.scan, newest_[kScan], now);
+  add_line<ros2::msg::Path>(picture, picture.path, newest_[kPath], now);
+  add_line<ros2::msg::LaserScan>(picture, picture.scan, newest_[kScan], now);
   return picture;
 }
 
@@ -162,7 +166,7 @@ void MapWatch::add_line(MapPicture& picture, std::optional<MapPicture::Line>& li
     picture.troubles.push_back("A path or scan of " + std::to_string(newest.refused >> 20) +
                                " MB is not drawn; the limit is 4 MB");
   if (newest.number == 0) return;
-  const auto message = decode<Message>(newest.payload);
+  const auto message = rtps::decode<Message>(newest.payload);
   if (!message) return;
   const auto placed = frames_.place(message->header.frame_id, frame_, now);
   if (placed) {
@@ -174,4 +178,4 @@ void MapWatch::add_line(MapPicture& picture, std::optional<MapPicture::Line>& li
   }
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -12,7 +12,7 @@
 #include "link/newest_message.h"
 #include "ros2/subscription.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class MapWatch {
  public:
@@ -24,11 +24,11 @@ class MapWatch {
   struct Topic {
     std::string name;
     std::string type;
-    Qos offered;
+    rtps::Qos offered;
   };
 
   // `self` outlives it.
-  explicit MapWatch(NodeEntry& self) : self_(self) {}
+  explicit MapWatch(ros2::NodeEntry& self) : self_(self) {}
 
   // Subscribes to the map of this name, or the usual one if there is none, to a path and to a scan. On the executor's thread.
   void follow(const std::vector<Topic>& topics, const std::string& wanted);
@@ -44,18 +44,18 @@ class MapWatch {
   struct Source {
     std::string topic;
     bool latches = false;
-    std::unique_ptr<RawSubscription> subscription;
+    std::unique_ptr<ros2::RawSubscription> subscription;
   };
 
   void listen(Part part, const Topic& topic);
-  void on_sample(Part part, const std::string& topic, const Sample& sample);
+  void on_sample(Part part, const std::string& topic, const ros2::Sample& sample);
   void decode_grid(Time now);
   void add_robots(MapPicture& picture, Time now) const CULPRIT_REQUIRES(mutex_);
   template <class Message>
   void add_line(MapPicture& picture, std::optional<MapPicture::Line>& line,
                 const NewestMessage& newest, Time now) const CULPRIT_REQUIRES(mutex_);
 
-  NodeEntry& self_;
+  ros2::NodeEntry& self_;
   mutable Mutex mutex_;
   std::vector<std::string> topics_ CULPRIT_GUARDED_BY(mutex_);
   std::array<NewestMessage, kScan + 1> newest_ CULPRIT_GUARDED_BY(mutex_);
@@ -70,4 +70,4 @@ class MapWatch {
   std::array<Source, kParts> sources_;  // goes first: its samples come on another thread
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -1,6 +1,6 @@
 #include "link/mode_managers.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 void ModeManagers::represents(const std::string& manager, const std::string& system) {
   systems_[manager].push_back(system);
@@ -21,7 +21,7 @@ std::vector<std::string> ModeManagers::systems_gone_with(const std::string& mana
 
 // The first one that offers them, for anybody may; and one that is proven to be here takes the place of one that is not.
 bool ModeManagers::may_tell(const std::string& manager, const std::string& system,
-                            const Graph& graph) {
+                            const ros2::Graph& graph) {
   const auto [known, is_new] = by_system_.try_emplace(system, manager);
   if (is_new || known->second == manager) return true;
   const bool is_better = graph.process_of(manager) != 0 && graph.process_of(known->second) == 0;
@@ -34,4 +34,4 @@ bool ModeManagers::may_tell(const std::string& manager, const std::string& syste
   return is_better;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -13,7 +13,7 @@
 #include "inbox/inbox.h"
 #include "ros2/graph.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // Nodes and systems by their full names.
 class ModeManagers {
@@ -23,7 +23,7 @@ class ModeManagers {
 
   // Whether the modes of `system` that `manager` offers count, from now on. Reports the first manager that offers
   // them beside another one (LinkTrouble).
-  bool may_tell(const std::string& manager, const std::string& system, const Graph& graph);
+  bool may_tell(const std::string& manager, const std::string& system, const ros2::Graph& graph);
 
   // The system is there by its manager alone.
   void represents(const std::string& manager, const std::string& system);
@@ -42,4 +42,4 @@ class ModeManagers {
       told_of_;  // systems, and others that offer their modes
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

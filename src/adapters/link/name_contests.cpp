@@ -8,7 +8,7 @@
 
 #include "base/name_grammar.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 std::string read_whole(const std::string& path) {
@@ -34,11 +34,11 @@ int parent_of(int pid) {
   return end + 4 < stat.size() ? std::atoi(stat.c_str() + end + 4) : 0;
 }
 
-std::string holders_in_words(const std::vector<GraphNode>& nodes) {
+std::string holders_in_words(const std::vector<ros2::GraphNode>& nodes) {
   if (nodes.size() < 2) return "";
   std::string text;
   std::string others;
-  for (const GraphNode& node : nodes) {
+  for (const ros2::GraphNode& node : nodes) {
     text += text.empty() ? "" : "; ";
     if (node.pid == 0) {
       text += node.host.empty() ? "one on another machine" : "one on " + printable(node.host);
@@ -60,9 +60,9 @@ std::string holders_in_words(const std::vector<GraphNode>& nodes) {
 
 }  // namespace
 
-void NameContests::seen(const NodeNamesakes& seen, bool is_ours, Time now) {
+void NameContests::seen(const ros2::NodeNamesakes& seen, bool is_ours, Time now) {
   std::vector<int> processes;
-  for (const GraphNode& node : seen.all) processes.push_back(node.pid);
+  for (const ros2::GraphNode& node : seen.all) processes.push_back(node.pid);
   const std::string text =
       "several nodes have the name " + seen.node + ": " + holders_in_words(seen.all);
   const MutexLock lock(mutex_);
@@ -96,4 +96,4 @@ std::map<std::string, std::vector<int>> NameContests::processes() const {
   return processes_;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

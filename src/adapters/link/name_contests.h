@@ -10,7 +10,7 @@
 #include "base/time.h"
 #include "ros2/graph.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // All members may be called from any thread.
 class NameContests {
@@ -21,7 +21,7 @@ class NameContests {
   static constexpr Duration kReminder = std::chrono::minutes(1);
 
   // `is_ours`: the node of a component, or a container that one is in.
-  void seen(const NodeNamesakes& seen, bool is_ours, Time now);
+  void seen(const ros2::NodeNamesakes& seen, bool is_ours, Time now);
 
   // For each node of ours whose name others have too: the text for a person.
   std::map<std::string, std::string> texts() const;
@@ -42,4 +42,4 @@ class NameContests {
   std::map<std::string, std::vector<int>> processes_ CULPRIT_GUARDED_BY(mutex_);  // likewise
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -9,7 +9,7 @@
 
 #include "base/component_mark.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,8 +129,8 @@ bool is_of_launch_file(const std::vector<std::string>& words,
 
 NamedProcess::NamedProcess(fs::path proc, unsigned user) : proc_(std::move(proc)), user_(user) {}
 
-FoundProcess NamedProcess::find(const ParticipantInfo& participant,
-                                const std::vector<Sought>& nodes) const {
+ros2::FoundProcess NamedProcess::find(const ros2::ParticipantInfo& participant,
+                                      const std::vector<Sought>& nodes) const {
   std::vector<int> found;
   std::error_code error;
   for (fs::directory_iterator i(proc_, error); !error && i != fs::directory_iterator();
@@ -161,4 +161,4 @@ FoundProcess NamedProcess::find(const ParticipantInfo& participant,
                  : "the command lines of several processes fit it"};
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -17,7 +17,7 @@
 
 #include "ros2/graph.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class NamedProcess {
  public:
@@ -31,7 +31,8 @@ class NamedProcess {
   explicit NamedProcess(std::filesystem::path proc = "/proc", unsigned user = geteuid());
 
   // The process of a participant with these nodes. Milliseconds: it looks through all processes.
-  FoundProcess find(const ParticipantInfo& participant, const std::vector<Sought>& nodes) const;
+  ros2::FoundProcess find(const ros2::ParticipantInfo& participant,
+                          const std::vector<Sought>& nodes) const;
 
  private:
   std::filesystem::path proc_;
@@ -48,4 +49,4 @@ bool is_of_launch_file(const std::vector<std::string>& words,
                        const std::vector<std::string>& starter,
                        const std::vector<std::string>& launch, const std::string& node);
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -7,7 +7,7 @@
 
 #include "base/test_folder.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -58,8 +58,8 @@ class Processes {
     for (const std::string& word : words) line << word << '\0';
     std::ofstream(folder / "maps") << "7f00-7f01 r-xp 0 00:00 1 " << library << "\n";
   }
-  FoundProcess find(int announced = 0) const {
-    ParticipantInfo participant;
+  ros2::FoundProcess find(int announced = 0) const {
+    ros2::ParticipantInfo participant;
     participant.pid = announced;
     return NamedProcess(proc.path()).find(participant, {{"/lidar", {"lidar", "-v"}, "0/r/lidar"}});
   }
@@ -113,7 +113,7 @@ TEST(NamedProcess, BelievesNoProcessOfAnotherUser) {
   all.add(300, {"/opt/lidar", "-v"});
   const NamedProcess::Sought sought{"/lidar", {"lidar", "-v"}, "0/r/lidar"};
   EXPECT_EQ(NamedProcess(all.proc.path(), geteuid()).find({}, {sought}).pid, 300);
-  const FoundProcess found = NamedProcess(all.proc.path(), geteuid() + 1).find({}, {sought});
+  const ros2::FoundProcess found = NamedProcess(all.proc.path(), geteuid() + 1).find({}, {sought});
   EXPECT_EQ(found.pid, 0);
   EXPECT_NE(found.missing, "");
 }
@@ -125,4 +125,4 @@ TEST(NamedProcess, KnowsProcessesByTheSixteenBitsThatAreAnnounced) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

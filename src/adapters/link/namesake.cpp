@@ -4,9 +4,9 @@
 
 #include "base/name_grammar.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-void Namesake::joined(const GraphNode& node, Time now) {
+void Namesake::joined(const ros2::GraphNode& node, Time now) {
   text_ = "another node is called " + node.name + ", too" +
           (node.host.empty() ? "" : ", on " + printable(node.host)) +
           ": a request to one of them may reach the other; start one culprit with --node-name";
@@ -18,4 +18,4 @@ std::optional<std::string> Namesake::due(Time now) {
   return text_;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -8,14 +8,14 @@
 #include "base/time.h"
 #include "ros2/graph.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class Namesake {
  public:
   // A namesake that is still there after that is another node.
   static constexpr Duration kLeaves = std::chrono::seconds(2);
 
-  void joined(const GraphNode& node, Time now);
+  void joined(const ros2::GraphNode& node, Time now);
   void left() { text_.reset(); }
   // The message for a person, once.
   std::optional<std::string> due(Time now);
@@ -26,4 +26,4 @@ class Namesake {
   bool is_told_ = false;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

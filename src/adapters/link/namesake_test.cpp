@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
 
 const Time kThen{100s};
-const GraphNode kNamesake{"/culprit", Vendor::kFastDds, "rover2", 0};
+const ros2::GraphNode kNamesake{"/culprit", ros2::Vendor::kFastDds, "rover2", 0};
 
 TEST(Namesake, ThatStaysIsToldOnce) {
   Namesake namesake;
@@ -32,4 +32,4 @@ TEST(Namesake, ThatIsLeavingIsNobodyElse) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

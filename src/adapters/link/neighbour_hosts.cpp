@@ -4,16 +4,17 @@
 
 #include "rtps/own_addresses.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-bool is_on_this_machine(const ParticipantInfo& info) {
-  const auto own = own_addresses();
+bool is_on_this_machine(const ros2::ParticipantInfo& info) {
+  const auto own = rtps::own_addresses();
   return !info.metatraffic.empty() &&
          std::all_of(info.metatraffic.begin(), info.metatraffic.end(),
-                     [&](const UdpAddress& address) { return own.contains(address.ip); });
+                     [&](const rtps::UdpAddress& address) { return own.contains(address.ip); });
 }
 
-void NeighbourHosts::joined(const GuidPrefix& participant, const std::string& host, bool is_here) {
+void NeighbourHosts::joined(const rtps::GuidPrefix& participant, const std::string& host,
+                            bool is_here) {
   if (is_here || host.empty()) return;
   const MutexLock lock(mutex_);
   if (hosts_.size() >= kMostHosts && !hosts_.contains(host))
@@ -27,7 +28,7 @@ void NeighbourHosts::joined(const GuidPrefix& participant, const std::string& ho
   joined.there.insert(participant);
 }
 
-void NeighbourHosts::left(const GuidPrefix& participant, bool was_lost, Time now) {
+void NeighbourHosts::left(const rtps::GuidPrefix& participant, bool was_lost, Time now) {
   const MutexLock lock(mutex_);
   const auto found = host_of_.find(participant);
   if (found == host_of_.end()) return;
@@ -49,7 +50,7 @@ void NeighbourHosts::listens_from(Time now) {
 
 Time NeighbourHosts::heard(const Host& host) const {
   Time last = kLongAgo;
-  for (const GuidPrefix& each : host.there) last = std::max(last, heard_last_(each));
+  for (const rtps::GuidPrefix& each : host.there) last = std::max(last, heard_last_(each));
   return last;
 }
 
@@ -67,4 +68,4 @@ Time NeighbourHosts::heard(const std::string& host) const {
   return heard(found->second);
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

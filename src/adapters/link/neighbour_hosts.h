@@ -21,10 +21,10 @@
 #include "ros2/participant.h"
 #include "rtps/guid.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // All addresses that it announces must be ours: addresses of bridges are the same on many machines.
-bool is_on_this_machine(const ParticipantInfo& info);
+bool is_on_this_machine(const ros2::ParticipantInfo& info);
 
 // All members may be called from any thread.
 class NeighbourHosts {
@@ -35,11 +35,11 @@ class NeighbourHosts {
   static constexpr std::size_t kMostParticipants = 1000;
 
   // When the last datagram of a participant came (Participant::heard_last).
-  using HeardLast = std::function<Time(const GuidPrefix&)>;
+  using HeardLast = std::function<Time(const rtps::GuidPrefix&)>;
   explicit NeighbourHosts(HeardLast heard_last) : heard_last_(std::move(heard_last)) {}
 
-  void joined(const GuidPrefix& participant, const std::string& host, bool is_here);
-  void left(const GuidPrefix& participant, bool was_lost, Time now);
+  void joined(const rtps::GuidPrefix& participant, const std::string& host, bool is_here);
+  void left(const rtps::GuidPrefix& participant, bool was_lost, Time now);
 
   // Nobody listened before: messages up to `now` may have been missed.
   void listens_from(Time now);
@@ -51,7 +51,7 @@ class NeighbourHosts {
 
  private:
   struct Host {
-    std::set<GuidPrefix> there;
+    std::set<rtps::GuidPrefix> there;
     std::size_t lost = 0;  // whose leases ran out since the last datagram
   };
   Time heard(const Host& host) const CULPRIT_REQUIRES(mutex_);
@@ -59,8 +59,8 @@ class NeighbourHosts {
   const HeardLast heard_last_;
   mutable Mutex mutex_;
   std::map<std::string, Host> hosts_ CULPRIT_GUARDED_BY(mutex_);  // by name
-  std::map<GuidPrefix, std::string> host_of_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<rtps::GuidPrefix, std::string> host_of_ CULPRIT_GUARDED_BY(mutex_);
   Time listens_from_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

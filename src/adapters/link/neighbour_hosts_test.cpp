@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
 
-GuidPrefix participant(std::uint8_t number) {
-  GuidPrefix prefix;
+rtps::GuidPrefix participant(std::uint8_t number) {
+  rtps::GuidPrefix prefix;
   prefix.bytes[0] = number;
   return prefix;
 }
@@ -31,8 +31,8 @@ struct Domain {
   bool is_silent(const std::string& host = "rover2") { return hosts.is_silent(host, now); }
 
   Time now{10s};
-  std::map<GuidPrefix, Time> last;
-  NeighbourHosts hosts{[this](const GuidPrefix& prefix) {
+  std::map<rtps::GuidPrefix, Time> last;
+  NeighbourHosts hosts{[this](const rtps::GuidPrefix& prefix) {
     return last.contains(prefix) ? last.at(prefix) : kLongAgo;
   }};
 };
@@ -119,4 +119,4 @@ TEST(NeighbourHosts, AreBoundedAndMakeRoomOfThoseThatAreGone) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

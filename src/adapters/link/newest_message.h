@@ -7,17 +7,17 @@
 #include "base/time.h"
 #include "ros2/participant.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 struct NewestMessage {
   std::string topic;
-  Bytes payload;
+  rtps::Bytes payload;
   Time at{};
   std::uint64_t number = 0;  // 0: none came
   std::size_t refused = 0;   // bytes of the one that came last, if it was too large
 
   // Numbers it with the next one of `messages`, if it has at most `most` bytes.
-  void keep(const std::string& from, ByteView bytes, std::size_t most, Time now,
+  void keep(const std::string& from, rtps::ByteView bytes, std::size_t most, Time now,
             std::uint64_t& messages) {
     refused = bytes.size() <= most ? 0 : bytes.size();
     if (refused > 0) return;
@@ -28,4 +28,4 @@ struct NewestMessage {
   }
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -4,14 +4,14 @@
 
 #include "link/map_watch.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
 
 TEST(NewestMessage, OfAPathOrScanIsRefusedIfItIsTooLarge) {
-  const Bytes large(MapWatch::kMostBytesOfOthers + 1);
-  const Bytes small(100);
+  const rtps::Bytes large(MapWatch::kMostBytesOfOthers + 1);
+  const rtps::Bytes small(100);
   std::uint64_t messages = 0;
   NewestMessage newest;
   newest.keep("/plan", small, MapWatch::kMostBytesOfOthers, Time(1s), messages);
@@ -27,4 +27,4 @@ TEST(NewestMessage, OfAPathOrScanIsRefusedIfItIsTooLarge) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

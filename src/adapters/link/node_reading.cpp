@@ -5,7 +5,7 @@
 #include "link/list_parameter.h"
 #include "ros2/lifecycle.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 // How long a node that was just seen may take until its services answer.
@@ -29,12 +29,12 @@ void NodeReading::service_seen(const std::string& service) {
 
 void NodeReading::list_parameters() {
   if (list_) return;
-  auto client =
-      self_.create_client<srv::ListParameters>(node_ + "/list_parameters", qos::kParameterServices);
+  auto client = self_.create_client<ros2::srv::ListParameters>(node_ + "/list_parameters",
+                                                               rtps::qos::kParameterServices);
   if (!client) return;
   list_ = std::move(*client);
-  list_->call({}, Repeat::kUntilAnswered, kAnswerPatience,
-              [this](const Client<srv::ListParameters>::Answer& answer) {
+  list_->call({}, ros2::Repeat::kUntilAnswered, kAnswerPatience,
+              [this](const ros2::Client<ros2::srv::ListParameters>::Answer& answer) {
                 if (answer.response) get_parameters(answer.response->names);
               });
 }
@@ -46,12 +46,12 @@ void NodeReading::get_parameters(std::vector<std::string> names) {
     told_.parameters.emplace();
     for (const std::string& name : names) (*told_.parameters)[name];
   }
-  auto client =
-      self_.create_client<srv::GetParameters>(node_ + "/get_parameters", qos::kParameterServices);
+  auto client = self_.create_client<ros2::srv::GetParameters>(node_ + "/get_parameters",
+                                                              rtps::qos::kParameterServices);
   if (!client) return;
   get_ = std::move(*client);
-  get_->call({names}, Repeat::kUntilAnswered, kAnswerPatience,
-             [this, names](const Client<srv::GetParameters>::Answer& answer) {
+  get_->call({names}, ros2::Repeat::kUntilAnswered, kAnswerPatience,
+             [this, names](const ros2::Client<ros2::srv::GetParameters>::Answer& answer) {
                if (!answer.response) return;
                const auto& values = answer.response->values;
                const MutexLock lock(mutex_);
@@ -60,11 +60,11 @@ void NodeReading::get_parameters(std::vector<std::string> names) {
              });
 }
 
-void NodeReading::parameters_changed(const msg::ParameterEvent& event) {
+void NodeReading::parameters_changed(const ros2::msg::ParameterEvent& event) {
   const MutexLock lock(mutex_);
   if (!told_.parameters) return;  // they will be read as they are then
   for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
-    for (const msg::Parameter& changed : *changes) {
+    for (const ros2::msg::Parameter& changed : *changes) {
       const bool has_room =
           told_.parameters->size() < kMaxParameters && changed.name.size() <= kMaxParameterName;
       if (!has_room && !told_.parameters->contains(changed.name)) continue;
@@ -74,31 +74,31 @@ void NodeReading::parameters_changed(const msg::ParameterEvent& event) {
       (*told_.parameters)[changed.name] = std::move(value);
     }
   }
-  for (const msg::Parameter& deleted : event.deleted_parameters)
+  for (const ros2::msg::Parameter& deleted : event.deleted_parameters)
     told_.parameters->erase(deleted.name);
 }
 
 void NodeReading::read_lifecycle() {
   if (state_) return;
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 10};
-  auto transitions = self_.create_subscription<msg::TransitionEvent>(
+  constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 10};
+  auto transitions = self_.create_subscription<ros2::msg::TransitionEvent>(
       node_ + "/transition_event", kQos,
-      [this](const msg::TransitionEvent& event) { set_lifecycle(event.goal_state.id); });
+      [this](const ros2::msg::TransitionEvent& event) { set_lifecycle(event.goal_state.id); });
   if (transitions) transitions_ = std::move(*transitions);
-  auto client = self_.create_client<srv::GetState>(node_ + "/get_state");
+  auto client = self_.create_client<ros2::srv::GetState>(node_ + "/get_state");
   if (!client) return;
   state_ = std::move(*client);
-  state_->call({}, Repeat::kUntilAnswered, kAnswerPatience,
-               [this](const Client<srv::GetState>::Answer& answer) {
+  state_->call({}, ros2::Repeat::kUntilAnswered, kAnswerPatience,
+               [this](const ros2::Client<ros2::srv::GetState>::Answer& answer) {
                  if (answer.response) set_lifecycle(answer.response->current_state.id);
                });
 }
 
 void NodeReading::set_lifecycle(std::uint8_t state) {
-  const auto known = lifecycle_states();
+  const auto known = ros2::lifecycle_states();
   const auto found = std::find(known.begin(), known.end(), static_cast<LifecycleState>(state));
   const MutexLock lock(mutex_);
-  told_.lifecycle = found == known.end() ? "" : label_of(*found);
+  told_.lifecycle = found == known.end() ? "" : ros2::label_of(*found);
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

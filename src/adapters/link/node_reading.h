@@ -12,7 +12,7 @@
 #include "ros2/node.h"
 #include "ros2/services.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // On the executor's thread, but for told().
 class NodeReading {
@@ -21,12 +21,12 @@ class NodeReading {
   static constexpr std::size_t kMaxParameters = 10'000;
 
   // `self` is our own node and outlives the reading; `node` is the full name of the other one.
-  NodeReading(Node& self, std::string node) : self_(self), node_(std::move(node)) {}
+  NodeReading(ros2::Node& self, std::string node) : self_(self), node_(std::move(node)) {}
 
   // The node was discovered to offer a service.
   void service_seen(const std::string& service);
   // It announced changes.
-  void parameters_changed(const msg::ParameterEvent& event);
+  void parameters_changed(const ros2::msg::ParameterEvent& event);
 
   // From any thread.
   LiveInventory::Node told() const;
@@ -37,14 +37,14 @@ class NodeReading {
   void read_lifecycle();
   void set_lifecycle(std::uint8_t state);
 
-  Node& self_;
+  ros2::Node& self_;
   const std::string node_;
   mutable Mutex mutex_;
   LiveInventory::Node told_ CULPRIT_GUARDED_BY(mutex_);
-  std::unique_ptr<Client<srv::ListParameters>> list_;
-  std::unique_ptr<Client<srv::GetParameters>> get_;
-  std::unique_ptr<Client<srv::GetState>> state_;
-  std::unique_ptr<Subscription> transitions_;
+  std::unique_ptr<ros2::Client<ros2::srv::ListParameters>> list_;
+  std::unique_ptr<ros2::Client<ros2::srv::GetParameters>> get_;
+  std::unique_ptr<ros2::Client<ros2::srv::GetState>> state_;
+  std::unique_ptr<ros2::Subscription> transitions_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -16,12 +16,12 @@
 #include "ros2/graph.h"
 #include "ros2/service_client.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class OtherNodes {
  public:
   // All outlive it.
-  OtherNodes(NodeEntry& self, const ComponentBinding& binding, Inbox& inbox)
+  OtherNodes(ros2::NodeEntry& self, const ComponentBinding& binding, Inbox& inbox)
       : self_(self), binding_(binding), inbox_(inbox) {}
 
   // Whether `node` is one of them.
@@ -29,14 +29,14 @@ class OtherNodes {
     return binding_.has_several(component) && binding_.node_of(component) != node;
   }
 
-  void joined(ComponentId component, const GraphNode& node);
+  void joined(ComponentId component, const ros2::GraphNode& node);
   void left(const std::string& node);
 
   // Asks each one that is there, and reports whether it answers.
   void probe();
   // Asks one, and gives the participant that answers, if any does. `then` may be called before this
   // returns.
-  void ask(const std::string& node, std::function<void(std::optional<GuidPrefix>)> then);
+  void ask(const std::string& node, std::function<void(std::optional<rtps::GuidPrefix>)> then);
 
  private:
   struct Node {
@@ -44,13 +44,13 @@ class OtherNodes {
     std::uint8_t place = 1;  // Probed::node
     int pid = 0;
     bool is_there = false;
-    std::unique_ptr<ServiceClient> client;  // null: a secured domain need not allow one
+    std::unique_ptr<ros2::ServiceClient> client;  // null: a secured domain need not allow one
   };
 
-  NodeEntry& self_;
+  ros2::NodeEntry& self_;
   const ComponentBinding& binding_;
   Inbox& inbox_;
   std::map<std::string, Node> nodes_;  // by name
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

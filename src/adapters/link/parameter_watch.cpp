@@ -6,31 +6,32 @@
 #include "base/name_grammar.h"
 #include "link/list_parameter.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-Expected<void> ParameterWatch::start(NodeEntry& self) {
+Expected<void> ParameterWatch::start(ros2::NodeEntry& self) {
   // Best effort and deep: many nodes announce at once when a robot starts.
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 100};
-  auto subscription = RawSubscription::create(self, "/parameter_events", msg::ParameterEvent::kType,
-                                              kQos, PayloadUse::kWhole,
-                                              [this](const Sample& sample) { on_sample(sample); });
+  constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 100};
+  auto subscription = ros2::RawSubscription::create(
+      self, "/parameter_events", ros2::msg::ParameterEvent::kType, kQos, ros2::PayloadUse::kWhole,
+      [this](const ros2::Sample& sample) { on_sample(sample); });
   if (!subscription) return Error{subscription.error()};
   subscription_ = std::move(*subscription);
   return {};
 }
 
-void ParameterWatch::on_sample(const Sample& sample) {
+void ParameterWatch::on_sample(const ros2::Sample& sample) {
   const std::size_t size = sample.payload.size();
-  if (size > msg::ParameterEvent::kLargest) return;
-  const Guid& writer = sample.identity.writer;
+  if (size > ros2::msg::ParameterEvent::kLargest) return;
+  const rtps::Guid& writer = sample.identity.writer;
   auto room = WaitingLookups::Room::kNone;
   {
     const MutexLock lock(mutex_);
     room = waiting_.admit(writer, size);
   }
   if (room == WaitingLookups::Room::kNone) return;
-  std::optional<msg::ParameterEvent> event;
-  if (room == WaitingLookups::Room::kMessage) event = decode<msg::ParameterEvent>(sample.payload);
+  std::optional<ros2::msg::ParameterEvent> event;
+  if (room == WaitingLookups::Room::kMessage)
+    event = rtps::decode<ros2::msg::ParameterEvent>(sample.payload);
   tasks_.post([this, size, room, writer, event = std::move(event)] {
     {
       const MutexLock lock(mutex_);
@@ -41,13 +42,13 @@ void ParameterWatch::on_sample(const Sample& sample) {
   });
 }
 
-void ParameterWatch::on_event(const msg::ParameterEvent& event, const Guid& writer) {
+void ParameterWatch::on_event(const ros2::msg::ParameterEvent& event, const rtps::Guid& writer) {
   const auto component = binding_.find(event.node);
   if (!component || others_.has(*component, event.node)) return;
-  const Graph::Owner owner = context_.graph().owner_of(writer);
+  const ros2::Graph::Owner owner = context_.graph().owner_of(writer);
   if (owner.node != event.node || !owner.counts) return doubt(*component, event.node, owner.node);
   for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
-    for (const msg::Parameter& changed : *changes) {
+    for (const ros2::msg::Parameter& changed : *changes) {
       for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
         const Parameter& wanted = rules_.parameters[p];
         if (wanted.component != *component || wanted.name != changed.name) continue;
@@ -58,8 +59,8 @@ void ParameterWatch::on_event(const msg::ParameterEvent& event, const Guid& writ
   }
 }
 
-void ParameterWatch::on_lost_event(const Guid& writer) {
-  const Graph::Owner owner = context_.graph().owner_of(writer);
+void ParameterWatch::on_lost_event(const rtps::Guid& writer) {
+  const ros2::Graph::Owner owner = context_.graph().owner_of(writer);
   const auto component = binding_.find(owner.node);
   if (component && owner.counts && !others_.has(*component, owner.node)) ask(*component);
 }
@@ -79,7 +80,7 @@ void ParameterWatch::ask(ComponentId component) {
   Asked& asked = asked_[component];
   if (now < later(asked.last, kPause)) {
     if (!std::exchange(asked.is_due, true))
-      tasks_.post_at(Executor::Clock::now() + kPause, [this, component] {
+      tasks_.post_at(ros2::Executor::Clock::now() + kPause, [this, component] {
         asked_[component].is_due = false;
         ask(component);
       });
@@ -89,4 +90,4 @@ void ParameterWatch::ask(ComponentId component) {
   ask_(component);
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

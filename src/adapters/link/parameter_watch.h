@@ -23,7 +23,7 @@
 #include "ros2/messages.h"
 #include "ros2/subscription.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class ParameterWatch {
  public:
@@ -31,8 +31,8 @@ class ParameterWatch {
   using Ask = std::function<void(ComponentId)>;
 
   // All outlive it.
-  ParameterWatch(const Context& context, Executor& executor, const RuleSet& rules, Inbox& inbox,
-                 const ComponentBinding& binding, const OtherNodes& others, Ask ask)
+  ParameterWatch(const ros2::Context& context, ros2::Executor& executor, const RuleSet& rules,
+                 Inbox& inbox, const ComponentBinding& binding, const OtherNodes& others, Ask ask)
       : context_(context),
         rules_(rules),
         inbox_(inbox),
@@ -42,31 +42,31 @@ class ParameterWatch {
         tasks_(executor) {}
 
   // Before the executor runs. An error when the middleware, or the domain's permissions, refuse.
-  Expected<void> start(NodeEntry& self);
+  Expected<void> start(ros2::NodeEntry& self);
 
  private:
-  void on_sample(const Sample& sample);
-  void on_event(const msg::ParameterEvent& event, const Guid& writer);
-  void on_lost_event(const Guid& writer);
+  void on_sample(const ros2::Sample& sample);
+  void on_event(const ros2::msg::ParameterEvent& event, const rtps::Guid& writer);
+  void on_lost_event(const rtps::Guid& writer);
   void doubt(ComponentId component, const std::string& node, const std::string& by);
   void ask(ComponentId component);
 
-  const Context& context_;
+  const ros2::Context& context_;
   const RuleSet& rules_;
   Inbox& inbox_;
   const ComponentBinding& binding_;
   const OtherNodes& others_;
   const Ask ask_;
   Mutex mutex_;
-  WaitingLookups waiting_ CULPRIT_GUARDED_BY(mutex_){msg::ParameterEvent::kLargest};
+  WaitingLookups waiting_ CULPRIT_GUARDED_BY(mutex_){ros2::msg::ParameterEvent::kLargest};
   struct Asked {
     Time last = kLongAgo;
     bool is_due = false;  // once more, at the end of the pause
   };
   std::map<ComponentId, Asked> asked_;  // because of an event that does not count
   std::set<std::pair<std::string, std::string>> told_of_;  // nodes, and the sources in their names
-  TaskGroup tasks_;
-  std::unique_ptr<RawSubscription> subscription_;
+  ros2::TaskGroup tasks_;
+  std::unique_ptr<ros2::RawSubscription> subscription_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

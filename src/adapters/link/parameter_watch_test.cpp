@@ -16,7 +16,7 @@
 #include "ros2/publisher.h"
 #include "ros2/timer.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
@@ -31,24 +31,24 @@ RULE R
 
 // A participant with one node, which publishes events of any node.
 struct Speaker {
-  Speaker(const TestDomain& domain, const NodeName& name)
+  Speaker(const ros2::TestDomain& domain, const ros2::NodeName& name)
       : context(domain.options()),
         node(*context, name),
-        events(std::move(*RawPublisher::create(node, "/parameter_events",
-                                               msg::ParameterEvent::kType, qos::kDefault))) {}
+        events(std::move(*ros2::RawPublisher::create(
+            node, "/parameter_events", ros2::msg::ParameterEvent::kType, rtps::qos::kDefault))) {}
   void says(const std::string& of, const Value& value) {
-    msg::ParameterEvent event;
+    ros2::msg::ParameterEvent event;
     event.node = of;
-    event.changed_parameters = {{"gain", to_parameter_value(value)}};
-    events->publish(encode(event));
+    event.changed_parameters = {{"gain", ros2::to_parameter_value(value)}};
+    events->publish(rtps::encode(event));
   }
-  LiveContext context;
-  NodeEntry node;
-  std::unique_ptr<RawPublisher> events;
+  ros2::LiveContext context;
+  ros2::NodeEntry node;
+  std::unique_ptr<ros2::RawPublisher> events;
 };
 
 struct Watched {
-  explicit Watched(const TestDomain& domain) : context(domain.options()) {
+  explicit Watched(const ros2::TestDomain& domain) : context(domain.options()) {
     EXPECT_TRUE(watch.start(node));
   }
   // As if its computer were busy, until the future is ready.
@@ -64,15 +64,15 @@ struct Watched {
   const RuleSet rules = *check(Source("test.rules", kParameterRule)).rules;
   Inbox inbox;
   ComponentBinding binding{rules};
-  LiveContext context;
-  NodeEntry node{*context, {"/", "culprit"}};
+  ros2::LiveContext context;
+  ros2::NodeEntry node{*context, {"/", "culprit"}};
   OtherNodes others{node, binding, inbox};
-  EventLog<ComponentId> asked;
+  rtps::EventLog<ComponentId> asked;
   ParameterWatch watch{
       *context, context->executor(), rules, inbox, binding, others, [this](ComponentId component) {
         asked.add(component);
       }};
-  TaskGroup tasks{context->executor()};
+  ros2::TaskGroup tasks{context->executor()};
 };
 
 // culprit has bound the component to the robot's node, of which a stranger publishes events.
@@ -83,12 +83,13 @@ struct WatchedAmongStrangers {
   }
   // For so long after the stranger was first received.
   void hear_lies(std::chrono::milliseconds more) {
-    Timer lies(stranger.context->executor(), 20ms, [this] { stranger.says("/robot", Value(9.0)); });
+    ros2::Timer lies(stranger.context->executor(), 20ms,
+                     [this] { stranger.says("/robot", Value(9.0)); });
     EXPECT_TRUE(watched.asked.wait_for_count(1)) << "the stranger is received";
     std::this_thread::sleep_for(more);
   }
 
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Watched watched{domain};
   Speaker robot{domain, {"/", "robot"}};
   Speaker stranger{domain, {"/", "stranger"}};
@@ -104,7 +105,7 @@ TEST(ParameterWatch, AsksANodeWhoseEventHasNoRoomBesideAFlood) {
   std::promise<void> goes_on;
   watched.hold(goes_on.get_future());
   // Until nothing of the last size fits, of which the robot's is, too.
-  const std::size_t large = 2 * msg::ParameterEvent::kLargest / 50'000;
+  const std::size_t large = 2 * ros2::msg::ParameterEvent::kLargest / 50'000;
   for (const auto& [size, count] : std::map<std::size_t, std::size_t, std::greater<>>{
            {50'000, large}, {1'000, 150}, {10, 100}}) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -125,12 +126,13 @@ TEST(ParameterWatch, AsksOnceMoreAfterTheLastEventOfOthers) {
 }
 
 TEST(ParameterWatch, BindsNoComponentToANodeThatSomebodyNames) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Watched watched(domain);
   Speaker stranger(domain, {"/", "stranger"});
   Speaker robot(domain, {"/", "robot"});
   ASSERT_TRUE(watched.context.sees_node("/robot"));
-  Timer lies(stranger.context->executor(), 20ms, [&] { stranger.says("/evil/robot", Value(9.0)); });
+  ros2::Timer lies(stranger.context->executor(), 20ms,
+                   [&] { stranger.says("/evil/robot", Value(9.0)); });
   std::this_thread::sleep_for(500ms);
   watched.context.run([&] {
     EXPECT_TRUE(watched.binding.bind("/robot"));
@@ -139,4 +141,4 @@ TEST(ParameterWatch, BindsNoComponentToANodeThatSomebodyNames) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -4,7 +4,7 @@
 
 #include "base/process_stat.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 std::optional<ProcessUsage> usage_of(int pid) {
   const auto stat = process_stat(std::to_string(pid));
@@ -28,4 +28,4 @@ std::optional<double> UsageMeter::look(int pid, const ProcessUsage& usage, Time 
   return seconds(used) / seconds(since);
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

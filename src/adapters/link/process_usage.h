@@ -6,7 +6,7 @@
 
 #include "base/time.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // The processor time that it used since its start, and the memory that it holds now.
 struct ProcessUsage {
@@ -31,4 +31,4 @@ class UsageMeter {
   Time at_ = kLongAgo;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
@@ -35,4 +35,4 @@ TEST(UsageMeter, MeasuresNoShortTime) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

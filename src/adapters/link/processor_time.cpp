@@ -9,7 +9,7 @@
 
 #include "base/live_clock.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 std::optional<Duration> processor_time_wanted(int pid) {
   std::error_code error;
@@ -38,4 +38,4 @@ bool was_at_work(const ProcessorLook& before, const ProcessorLook& after) {
          after.wanted - before.wanted >= (after.at - before.at) / kShare;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -6,7 +6,7 @@
 
 #include "base/time.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // The time that all threads of the process have had a processor for, or waited for one. Nothing:
 // there is no such process, or the kernel does not show it.
@@ -24,4 +24,4 @@ std::optional<ProcessorLook> look_at_processor_time(int pid);
 // far less.
 bool was_at_work(const ProcessorLook& before, const ProcessorLook& after);
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
@@ -49,4 +49,4 @@ TEST(ProcessorTime, OfNoProcessIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

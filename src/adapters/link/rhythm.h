@@ -4,7 +4,7 @@
 
 #include "base/time.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // How a topic's messages arrived.
 struct Rhythm {
@@ -14,4 +14,4 @@ struct Rhythm {
   bool operator==(const Rhythm&) const = default;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

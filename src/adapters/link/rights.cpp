@@ -10,7 +10,7 @@
 #include "ros2/discovery_info.h"
 #include "ros2/hearing.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 // Any other text that a rule file gives as a service could not be called either.
@@ -66,15 +66,15 @@ void profile(std::string& xml, const char* kind, const char* verb, const char* e
 }
 
 // As ROS 2 has them on DDS. Patterns are kept.
-std::vector<std::string> mangled(Channel channel, const std::vector<std::string>& names) {
+std::vector<std::string> mangled(ros2::Channel channel, const std::vector<std::string>& names) {
   std::vector<std::string> all;
   all.reserve(names.size());
-  for (const std::string& name : names) all.push_back(mangle_topic(channel, name));
+  for (const std::string& name : names) all.push_back(ros2::mangle_topic(channel, name));
   return all;
 }
 
 void criteria(std::string& xml, const char* verb, std::vector<std::vector<std::string>> parts) {
-  std::vector<std::string> names{std::string(kDiscoveryInfoTopic)};
+  std::vector<std::string> names{std::string(ros2::kDiscoveryInfoTopic)};
   for (std::vector<std::string>& part : parts) names.insert(names.end(), part.begin(), part.end());
   std::sort(names.begin(), names.end());
   const std::string element = verb;
@@ -85,10 +85,10 @@ void criteria(std::string& xml, const char* verb, std::vector<std::vector<std::s
 
 }  // namespace
 
-Rights rights_of(const RuleSet& rules, const NodeName& self) {
+Rights rights_of(const RuleSet& rules, const ros2::NodeName& self) {
   Rights rights;
-  const auto lease = demangle_topic(ManagerLease::kTopic);
-  const auto hearing = demangle_topic(Hearing::kTopic);
+  const auto lease = ros2::demangle_topic(ManagerLease::kTopic);
+  const auto hearing = ros2::demangle_topic(ros2::Hearing::kTopic);
   rights.publishes = {"/diagnostics", "/parameter_events", "/rosout", lease->name, hearing->name};
   // Of ros_api/: its messages, and the orders that are taken.
   for (const char* topic :
@@ -115,7 +115,8 @@ Rights rights_of(const RuleSet& rules, const NodeName& self) {
   return rights;
 }
 
-std::string sros2_policy(const Rights& rights, const NodeName& self, const std::string& enclave) {
+std::string sros2_policy(const Rights& rights, const ros2::NodeName& self,
+                         const std::string& enclave) {
   CULPRIT_ASSERT(is_valid_topic_name(enclave));
   std::string xml = "<policy version=\"0.2.0\">\n  <enclaves>\n    <enclave path=\"" + enclave +
                     "\">\n      <profiles>\n        <profile ns=\"" + self.name_space +
@@ -141,14 +142,16 @@ std::string permissions(const Rights& rights, const std::string& enclave, std::u
       "</not_after>\n      </validity>\n      <allow_rule>\n        <domains><id>" +
       std::to_string(domain) + "</id></domains>\n";
   criteria(xml, "publish",
-           {mangled(Channel::kTopic, rights.publishes), mangled(Channel::kReply, rights.offers),
-            mangled(Channel::kRequest, rights.calls)});
+           {mangled(ros2::Channel::kTopic, rights.publishes),
+            mangled(ros2::Channel::kReply, rights.offers),
+            mangled(ros2::Channel::kRequest, rights.calls)});
   criteria(xml, "subscribe",
-           {mangled(Channel::kTopic, rights.subscribes), mangled(Channel::kRequest, rights.offers),
-            mangled(Channel::kReply, rights.calls)});
+           {mangled(ros2::Channel::kTopic, rights.subscribes),
+            mangled(ros2::Channel::kRequest, rights.offers),
+            mangled(ros2::Channel::kReply, rights.calls)});
   return xml +
          "      </allow_rule>\n      <default>DENY</default>\n    </grant>\n  </permissions>\n"
          "</dds>\n";
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -15,7 +15,7 @@
 #include "language/rule_set.h"
 #include "ros2/names.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // Each ascending, without duplicates. A `*` stands for any text, slashes included: where the rules
 // name a node without its namespace.
@@ -27,11 +27,12 @@ struct Rights {
 };
 
 // The rights of the node `self` with these rules.
-Rights rights_of(const RuleSet& rules, const NodeName& self);
+Rights rights_of(const RuleSet& rules, const ros2::NodeName& self);
 
 // `enclave` is the one that culprit's keys are of: "/culprit".
 // @pre is_valid_topic_name(enclave)
-std::string sros2_policy(const Rights& rights, const NodeName& self, const std::string& enclave);
+std::string sros2_policy(const Rights& rights, const ros2::NodeName& self,
+                         const std::string& enclave);
 
 struct Validity {
   std::string from;  // "2026-01-31T00:00:00", UTC
@@ -41,4 +42,4 @@ struct Validity {
 std::string permissions(const Rights& rights, const std::string& enclave, std::uint32_t domain,
                         const Validity& validity);
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -10,7 +10,7 @@
 
 #include "language/checker.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using testing::Contains;
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::Not;
 
-const NodeName kSelf{"/", "culprit"};
+const ros2::NodeName kSelf{"/", "culprit"};
 
 RuleSet rules_of(const std::string& text) {
   Checked checked = check(Source("test.rules", text));
@@ -111,4 +111,4 @@ TEST(Policy, NamesOnDdsAreThoseOfRos) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

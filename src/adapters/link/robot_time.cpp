@@ -5,7 +5,7 @@
 
 #include "base/live_clock.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 Expected<void> RobotTime::open() {
   auto clock = SimulatedClock::open(self_);
@@ -33,7 +33,7 @@ void RobotTime::learned(ComponentId component, const std::string& node, bool is_
   first_ = node;
   first_since_ = live_now();
   constexpr Duration kLooks = std::chrono::milliseconds(50);
-  looking_ = std::make_unique<Timer>(context_.executor(), kLooks, [this] { look(); });
+  looking_ = std::make_unique<ros2::Timer>(context_.executor(), kLooks, [this] { look(); });
 }
 
 // Null: it is followed for none, or for those nodes only that use it.
@@ -116,4 +116,4 @@ void RobotTime::report_clock() {
   }
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -23,13 +23,13 @@
 #include "ros2/context.h"
 #include "ros2/timer.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // On the executor's thread, but for doubtful() and doubt(), which any thread may call.
 class RobotTime {
  public:
   // `self`, `context` and `inbox` outlive it.
-  RobotTime(NodeEntry& self, Context& context, Inbox& inbox)
+  RobotTime(ros2::NodeEntry& self, ros2::Context& context, Inbox& inbox)
       : self_(self), context_(context), inbox_(inbox) {}
 
   // Before the executor runs. An error when the middleware, or the domain's permissions, refuse.
@@ -54,8 +54,8 @@ class RobotTime {
   void report_step();
   void report_clock();
 
-  NodeEntry& self_;
-  Context& context_;
+  ros2::NodeEntry& self_;
+  ros2::Context& context_;
   Inbox& inbox_;
 
   bool is_for_all_ = false;
@@ -72,7 +72,7 @@ class RobotTime {
   std::map<std::string, Simulated> simulated_;  // by node
   std::set<std::string> sources_;               // those of them that publish /clock, or did
   Time stood_ = kLongAgo;                       // when the clock stood still last
-  std::unique_ptr<Timer> looking_;
+  std::unique_ptr<ros2::Timer> looking_;
 
   std::string first_;  // that said that it is simulated
   Time first_since_ = kLongAgo;
@@ -83,4 +83,4 @@ class RobotTime {
   ClockStep system_clock_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

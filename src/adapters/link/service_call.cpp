@@ -8,15 +8,15 @@
 #include "base/closest.h"
 #include "ros2/names.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 // Turns YAML into a message, field by field.
 class RequestWriter {
  public:
-  explicit RequestWriter(MessageLibrary& library) : library_(library) {}
+  explicit RequestWriter(ros2::MessageLibrary& library) : library_(library) {}
 
-  Expected<Bytes> write(const std::string& type, const YAML::Node& text) {
+  Expected<rtps::Bytes> write(const std::string& type, const YAML::Node& text) {
     message(type, text, "");
     if (!error_.empty()) return Error{error_};
     return out_.take();
@@ -35,11 +35,11 @@ class RequestWriter {
     if (!definition) return fail(where, definition.error());
     const bool is_left_out = !text.IsDefined() || text.IsNull();
     if (!is_left_out && !text.IsMap()) return fail(where, "write its fields, as {name: value}");
-    const std::vector<FieldDefinition>& fields = (*definition)->fields;
+    const std::vector<ros2::FieldDefinition>& fields = (*definition)->fields;
     if (!is_left_out) refuse_others(fields, text, where, type);
     if (++depth_ > kDeepest) return fail(where, "the type goes too deep");
     if (fields.empty()) out_.write(std::uint8_t{0});
-    for (const FieldDefinition& field : fields) {
+    for (const ros2::FieldDefinition& field : fields) {
       if (!error_.empty()) break;
       const std::string place = where.empty() ? field.name : where + "." + field.name;
       write_field(field, is_left_out ? YAML::Node(YAML::NodeType::Undefined) : text[field.name],
@@ -48,11 +48,11 @@ class RequestWriter {
     --depth_;
   }
 
-  void refuse_others(const std::vector<FieldDefinition>& fields, const YAML::Node& text,
+  void refuse_others(const std::vector<ros2::FieldDefinition>& fields, const YAML::Node& text,
                      const std::string& where, const std::string& type) {
     std::vector<std::string_view> names;
     std::string all;
-    for (const FieldDefinition& field : fields) {
+    for (const ros2::FieldDefinition& field : fields) {
       names.push_back(field.name);
       all += (all.empty() ? "" : ", ") + field.name;
     }
@@ -67,13 +67,14 @@ class RequestWriter {
     }
   }
 
-  void write_field(const FieldDefinition& field, const YAML::Node& text, const std::string& where) {
-    if (field.shape == Shape::kSingle) return element(field, text, where);
+  void write_field(const ros2::FieldDefinition& field, const YAML::Node& text,
+                   const std::string& where) {
+    if (field.shape == ros2::Shape::kSingle) return element(field, text, where);
     const bool is_left_out = !text.IsDefined() || text.IsNull();
     if (!is_left_out && !text.IsSequence()) return fail(where, "write a list, as [1, 2]");
     std::size_t count = is_left_out ? 0 : text.size();
     if (count > kMostElements) return fail(where, "the list is too long");
-    if (field.shape == Shape::kArray) {
+    if (field.shape == ros2::Shape::kArray) {
       if (!is_left_out && count != field.count)
         return fail(where, "it has " + std::to_string(field.count) + " elements");
       if (field.count > kMostElements) return fail(where, "the type goes too far");
@@ -88,37 +89,38 @@ class RequestWriter {
               where + "[" + std::to_string(i) + "]");
   }
 
-  void element(const FieldDefinition& field, const YAML::Node& text, const std::string& where) {
+  void element(const ros2::FieldDefinition& field, const YAML::Node& text,
+               const std::string& where) {
     if (const auto* type = std::get_if<std::string>(&field.element))
       return message(*type, text, where);
-    switch (std::get<Primitive>(field.element)) {
-      case Primitive::kBool:
+    switch (std::get<ros2::Primitive>(field.element)) {
+      case ros2::Primitive::kBool:
         return value<bool>(text, where, "true or false");
-      case Primitive::kByte:
-      case Primitive::kChar:
-      case Primitive::kUint8:
+      case ros2::Primitive::kByte:
+      case ros2::Primitive::kChar:
+      case ros2::Primitive::kUint8:
         return whole<std::uint8_t>(text, where);
-      case Primitive::kInt8:
+      case ros2::Primitive::kInt8:
         return whole<std::int8_t>(text, where);
-      case Primitive::kInt16:
+      case ros2::Primitive::kInt16:
         return whole<std::int16_t>(text, where);
-      case Primitive::kUint16:
+      case ros2::Primitive::kUint16:
         return whole<std::uint16_t>(text, where);
-      case Primitive::kInt32:
+      case ros2::Primitive::kInt32:
         return whole<std::int32_t>(text, where);
-      case Primitive::kUint32:
+      case ros2::Primitive::kUint32:
         return whole<std::uint32_t>(text, where);
-      case Primitive::kInt64:
+      case ros2::Primitive::kInt64:
         return value<std::int64_t>(text, where, "a whole number");
-      case Primitive::kUint64:
+      case ros2::Primitive::kUint64:
         return value<std::uint64_t>(text, where, "a whole number that is not negative");
-      case Primitive::kFloat32:
+      case ros2::Primitive::kFloat32:
         return value<float>(text, where, "a number");
-      case Primitive::kFloat64:
+      case ros2::Primitive::kFloat64:
         return value<double>(text, where, "a number");
-      case Primitive::kString:
+      case ros2::Primitive::kString:
         return words(field, text, where);
-      case Primitive::kWString:
+      case ros2::Primitive::kWString:
         return fail(where, "texts of wide characters cannot be sent");
     }
   }
@@ -145,7 +147,7 @@ class RequestWriter {
     out_.write(static_cast<T>(read));
   }
 
-  void words(const FieldDefinition& field, const YAML::Node& text, const std::string& where) {
+  void words(const ros2::FieldDefinition& field, const YAML::Node& text, const std::string& where) {
     const bool is_left_out = !text.IsDefined() || text.IsNull();
     if (!is_left_out && !text.IsScalar()) return fail(where, "write a text");
     const std::string read = is_left_out ? "" : text.Scalar();
@@ -154,14 +156,14 @@ class RequestWriter {
     out_.write_string(read);
   }
 
-  MessageLibrary& library_;
-  CdrWriter out_;
+  ros2::MessageLibrary& library_;
+  rtps::CdrWriter out_;
   std::string error_;
   int depth_ = 0;
 };
 
-Expected<Bytes> payload_of(MessageLibrary& library, const std::string& type,
-                           const std::string& request) {
+Expected<rtps::Bytes> payload_of(ros2::MessageLibrary& library, const std::string& type,
+                                 const std::string& request) {
   try {
     return RequestWriter(library).write(type, YAML::Load(request));
   } catch (const YAML::Exception& e) {
@@ -169,10 +171,10 @@ Expected<Bytes> payload_of(MessageLibrary& library, const std::string& type,
   }
 }
 
-std::optional<FieldReader> first_of(MessageLibrary& library, const std::string& type,
-                                    std::initializer_list<const char*> paths) {
+std::optional<ros2::FieldReader> first_of(ros2::MessageLibrary& library, const std::string& type,
+                                          std::initializer_list<const char*> paths) {
   for (const char* path : paths) {
-    auto reader = FieldReader::compile(library, type, path);
+    auto reader = ros2::FieldReader::compile(library, type, path);
     if (reader) return std::move(*reader);
   }
   return std::nullopt;
@@ -181,7 +183,7 @@ std::optional<FieldReader> first_of(MessageLibrary& library, const std::string& 
 }  // namespace
 
 Expected<ServiceCall> ServiceCall::prepare(const std::string& type, const std::string& request,
-                                           MessageLibrary& library) {
+                                           ros2::MessageLibrary& library) {
   if (!is_valid_type_name(type)) return Error{"'" + printable(type) + "' is no type of a service"};
   const std::string asked = type + "_Request";
   const std::string answered = type + "_Response";
@@ -196,10 +198,10 @@ Expected<ServiceCall> ServiceCall::prepare(const std::string& type, const std::s
   return call;
 }
 
-std::optional<ServiceCall::Verdict> ServiceCall::judge(ByteView answer) const {
-  const auto read = [&](const std::optional<FieldReader>& field) -> std::optional<Value> {
+std::optional<ServiceCall::Verdict> ServiceCall::judge(rtps::ByteView answer) const {
+  const auto read = [&](const std::optional<ros2::FieldReader>& field) -> std::optional<Value> {
     Value value;
-    if (!field || field->read(answer, value) != FieldStatus::kRead) return std::nullopt;
+    if (!field || field->read(answer, value) != ros2::FieldStatus::kRead) return std::nullopt;
     return value;
   };
   Verdict verdict{true, ""};
@@ -214,4 +216,4 @@ std::optional<ServiceCall::Verdict> ServiceCall::judge(ByteView answer) const {
   return verdict;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -14,31 +14,31 @@
 #include "ros2/field_reader.h"
 #include "ros2/message_library.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class ServiceCall {
  public:
   // `type` is "package/srv/Type", `library` what knows both its messages as the server means them
   // (type_finder.h). Errors: it does not know them, or the request does not fit.
   static Expected<ServiceCall> prepare(const std::string& type, const std::string& request,
-                                       MessageLibrary& library);
+                                       ros2::MessageLibrary& library);
 
   // A whole payload.
-  const Bytes& request() const { return request_; }
+  const rtps::Bytes& request() const { return request_; }
 
   struct Verdict {
     bool is_done = false;
     std::string text;  // the server's message; may be empty
   };
   // Nothing: the payload is no answer of that type.
-  std::optional<Verdict> judge(ByteView answer) const;
+  std::optional<Verdict> judge(rtps::ByteView answer) const;
 
  private:
   ServiceCall() = default;
 
-  Bytes request_;
-  std::optional<FieldReader> success_;
-  std::optional<FieldReader> text_;
+  rtps::Bytes request_;
+  std::optional<ros2::FieldReader> success_;
+  std::optional<ros2::FieldReader> text_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -9,14 +9,14 @@
 #include "base/test_folder.h"
 #include "ros2/services.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using testing::HasSubstr;
 
 Expected<ServiceCall> call(const std::string& type, const std::string& request,
                            const std::vector<std::filesystem::path>& message_path = {}) {
-  MessageLibrary library(message_path);
+  ros2::MessageLibrary library(message_path);
   return ServiceCall::prepare(type, request, library);
 }
 
@@ -39,22 +39,25 @@ struct ControllerFiles {
     std::ofstream(path) << text;
   }
   Expected<ServiceCall> call(const std::string& type, const std::string& request) const {
-    return ros2::call(type, request, {folder.path()});
+    return link::call(type, request, {folder.path()});
   }
   test::TestFolder folder;
 };
 
 TEST(ServiceCall, SendsWhatTheTypesThatAreTheSameEverywhereSay) {
-  EXPECT_EQ(call("std_srvs/srv/Trigger", "")->request(), encode(srv::Trigger::Request{}));
-  EXPECT_EQ(call("std_srvs/srv/Empty", "{}")->request(), encode(srv::Trigger::Request{}));
+  EXPECT_EQ(call("std_srvs/srv/Trigger", "")->request(),
+            rtps::encode(ros2::srv::Trigger::Request{}));
+  EXPECT_EQ(call("std_srvs/srv/Empty", "{}")->request(),
+            rtps::encode(ros2::srv::Trigger::Request{}));
   EXPECT_EQ(call("std_srvs/srv/SetBool", "data: true")->request(),
-            encode(srv::SetBool::Request{true}));
-  EXPECT_EQ(call("std_srvs/srv/SetBool", "")->request(), encode(srv::SetBool::Request{false}));
+            rtps::encode(ros2::srv::SetBool::Request{true}));
+  EXPECT_EQ(call("std_srvs/srv/SetBool", "")->request(),
+            rtps::encode(ros2::srv::SetBool::Request{false}));
   const auto call_of_nav2 = call("nav2_msgs/srv/ManageLifecycleNodes", "command: 2");
-  CdrReader resume(call_of_nav2->request());
+  rtps::CdrReader resume(call_of_nav2->request());
   EXPECT_EQ(resume.read<std::uint8_t>(), 2);
   EXPECT_EQ(resume.left(), 0u);
-  srv::SetParametersAtomically::Request gain;
+  ros2::srv::SetParametersAtomically::Request gain;
   gain.parameters.resize(1);
   gain.parameters[0].name = "gain";
   gain.parameters[0].value.type = 3;
@@ -62,7 +65,7 @@ TEST(ServiceCall, SendsWhatTheTypesThatAreTheSameEverywhereSay) {
   EXPECT_EQ(call("rcl_interfaces/srv/SetParametersAtomically",
                  "parameters: [{name: gain, value: {type: 3, double_value: 1.5}}]")
                 ->request(),
-            encode(gain));
+            rtps::encode(gain));
 }
 
 TEST(ServiceCall, SendsWhatTheFilesOfTheRobotSay) {
@@ -71,7 +74,7 @@ TEST(ServiceCall, SendsWhatTheFilesOfTheRobotSay) {
       files.call("controller_manager_msgs/srv/SwitchController",
                  "{activate_controllers: [arm, base], strictness: 2, timeout: {sec: 3}}");
   ASSERT_TRUE(switching) << switching.error();
-  CdrReader sent(switching->request());
+  rtps::CdrReader sent(switching->request());
   EXPECT_EQ(sent.read<std::uint32_t>(), 2u);
   EXPECT_EQ(sent.read_string(), "arm");
   EXPECT_EQ(sent.read_string(), "base");
@@ -85,7 +88,7 @@ TEST(ServiceCall, SendsWhatTheFilesOfTheRobotSay) {
   const auto state = files.call("controller_manager_msgs/srv/SetHardwareComponentState",
                                 "{name: arm, target_state: {label: inactive}}");
   ASSERT_TRUE(state) << state.error();
-  CdrReader asked(state->request());
+  rtps::CdrReader asked(state->request());
   EXPECT_EQ(asked.read_string(), "arm");
   EXPECT_EQ(asked.read<std::uint8_t>(), 0);
   EXPECT_EQ(asked.read_string(), "inactive");
@@ -118,24 +121,25 @@ TEST(ServiceCall, RefusesWhatDoesNotFitTheType) {
 
 TEST(ServiceCall, BelievesAnAnswerThatRefuses) {
   const auto trigger = call("std_srvs/srv/Trigger", "");
-  const auto refused = trigger->judge(encode(srv::Trigger::Response{false, "too hot"}));
+  const auto refused = trigger->judge(rtps::encode(ros2::srv::Trigger::Response{false, "too hot"}));
   ASSERT_TRUE(refused);
   EXPECT_FALSE(refused->is_done);
   EXPECT_EQ(refused->text, "too hot");
-  EXPECT_TRUE(trigger->judge(encode(srv::Trigger::Response{true, ""}))->is_done);
-  EXPECT_FALSE(trigger->judge(Bytes{0, 1, 0, 0})) << "it is cut";
+  EXPECT_TRUE(trigger->judge(rtps::encode(ros2::srv::Trigger::Response{true, ""}))->is_done);
+  EXPECT_FALSE(trigger->judge(rtps::Bytes{0, 1, 0, 0})) << "it is cut";
   const auto atomically = call("rcl_interfaces/srv/SetParametersAtomically", "");
-  const auto answer =
-      atomically->judge(encode(srv::SetParametersAtomically::Response{{false, "read-only"}}));
+  const auto answer = atomically->judge(
+      rtps::encode(ros2::srv::SetParametersAtomically::Response{{false, "read-only"}}));
   ASSERT_TRUE(answer);
   EXPECT_FALSE(answer->is_done);
   EXPECT_EQ(answer->text, "read-only");
-  EXPECT_TRUE(call("std_srvs/srv/Empty", "")->judge(encode(srv::Trigger::Request{}))->is_done);
+  EXPECT_TRUE(
+      call("std_srvs/srv/Empty", "")->judge(rtps::encode(ros2::srv::Trigger::Request{}))->is_done);
   const ControllerFiles files;
   const auto switching = files.call("controller_manager_msgs/srv/SwitchController", "");
-  EXPECT_FALSE(switching->judge(Bytes{0, 1, 0, 0, 0})->is_done);
-  EXPECT_TRUE(switching->judge(Bytes{0, 1, 0, 0, 1})->is_done);
+  EXPECT_FALSE(switching->judge(rtps::Bytes{0, 1, 0, 0, 0})->is_done);
+  EXPECT_TRUE(switching->judge(rtps::Bytes{0, 1, 0, 0, 1})->is_done);
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -2,7 +2,7 @@
 
 #include "base/name_grammar.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 std::string in_words(const std::string& node) {
@@ -100,4 +100,4 @@ SignalPublishers::Answer SignalPublishers::report(const std::string& status, con
   return answer;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

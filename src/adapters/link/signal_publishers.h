@@ -28,7 +28,7 @@
 #include "base/ids.h"
 #include "base/time.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class SignalPublishers {
  public:
@@ -91,4 +91,4 @@ class SignalPublishers {
   std::map<std::string, std::string> conflicts_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

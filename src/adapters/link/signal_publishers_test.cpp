@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
@@ -164,4 +164,4 @@ TEST(SignalPublishers, ThatAreDeclaredMayBeTwoOnOtherComputers) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

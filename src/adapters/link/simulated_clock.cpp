@@ -5,16 +5,16 @@
 #include "base/live_clock.h"
 #include "ros2/messages.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-Expected<std::unique_ptr<SimulatedClock>> SimulatedClock::open(NodeEntry& self) {
+Expected<std::unique_ptr<SimulatedClock>> SimulatedClock::open(ros2::NodeEntry& self) {
   auto clock = std::make_unique<SimulatedClock>();
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
+  constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 1};
   // A message of this type is one builtin_interfaces/Time.
-  auto subscription = RawSubscription::create(
-      self, kTopic, "rosgraph_msgs/msg/Clock", kQos, PayloadUse::kWhole,
-      [raw = clock.get()](const Sample& sample) {
-        const auto time = decode<msg::Time>(sample.payload);
+  auto subscription = ros2::RawSubscription::create(
+      self, kTopic, "rosgraph_msgs/msg/Clock", kQos, ros2::PayloadUse::kWhole,
+      [raw = clock.get()](const ros2::Sample& sample) {
+        const auto time = rtps::decode<ros2::msg::Time>(sample.payload);
         if (time)
           raw->tick(std::chrono::seconds(time->sec) + std::chrono::nanoseconds(time->nanosec),
                     live_now());
@@ -56,4 +56,4 @@ std::string SimulatedClock::doubt(Time now) const {
   return has_just_jumped(now) ? "the simulated time jumped" : "the simulated time stands still";
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -15,7 +15,7 @@
 #include "base/time.h"
 #include "ros2/subscription.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class SimulatedClock {
  public:
@@ -31,7 +31,7 @@ class SimulatedClock {
   static constexpr int kFastest = 100;
 
   // `self` outlives it. An error when the middleware, or the domain's permissions, refuse.
-  static Expected<std::unique_ptr<SimulatedClock>> open(NodeEntry& self);
+  static Expected<std::unique_ptr<SimulatedClock>> open(ros2::NodeEntry& self);
 
   // Until when it is sure that it runs; in the past: it stands still. From any thread, as the next.
   Time doubtful(Time now) const;
@@ -51,7 +51,7 @@ class SimulatedClock {
   Time advanced_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
   Time jumped_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
   Duration usual_pause_ CULPRIT_GUARDED_BY(mutex_) = kPatience / 3;
-  std::unique_ptr<RawSubscription> subscription_;
+  std::unique_ptr<ros2::RawSubscription> subscription_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

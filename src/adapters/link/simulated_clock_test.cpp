@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
@@ -74,4 +74,4 @@ TEST(SimulatedClock, MayRunFast) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -6,7 +6,7 @@
 
 #include "base/time.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // Thread-safe.
 class Starvation {
@@ -25,4 +25,4 @@ class Starvation {
   std::atomic<Time> until_ = kLongAgo;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

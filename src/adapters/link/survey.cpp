@@ -6,7 +6,7 @@
 #include "base/live_clock.h"
 #include "ros2/process_finder.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 constexpr std::size_t kMaxStatuses = 10'000;  // the network decides how many there are
@@ -17,9 +17,9 @@ constexpr std::size_t kMaxShown = 256;        // bytes, of a status, a logger or
 constexpr std::size_t kMaxStatus = 16 << 10;  // bytes
 
 // In bytes, about.
-std::size_t size_of(const msg::DiagnosticStatus& status) {
+std::size_t size_of(const ros2::msg::DiagnosticStatus& status) {
   std::size_t size = status.name.size() + status.hardware_id.size();
-  for (const msg::KeyValue& pair : status.values)
+  for (const ros2::msg::KeyValue& pair : status.values)
     size += sizeof pair + pair.key.size() + pair.value.size();
   return size;
 }
@@ -33,7 +33,7 @@ Expected<std::unique_ptr<Survey>> Survey::open(Options options) {
 }
 
 Survey::Survey(Options options)
-    : options_(std::move(options)), tasks_(std::make_unique<TaskGroup>(executor_)) {}
+    : options_(std::move(options)), tasks_(std::make_unique<ros2::TaskGroup>(executor_)) {}
 
 Survey::~Survey() {
   executor_.stop();
@@ -52,15 +52,15 @@ Survey::~Survey() {
 }
 
 Expected<void> Survey::start() {
-  Graph::Options graph;
-  graph.listener = [this](const GraphChange& change) { on_change(change); };
-  graph.find_process = [finder = ProcessFinder()](const ParticipantInfo& participant) {
+  ros2::Graph::Options graph;
+  graph.listener = [this](const ros2::GraphChange& change) { on_change(change); };
+  graph.find_process = [finder = ros2::ProcessFinder()](const ros2::ParticipantInfo& participant) {
     return finder.find(participant);
   };
-  auto context = Context::create(executor_, options_.participant, std::move(graph));
+  auto context = ros2::Context::create(executor_, options_.participant, std::move(graph));
   if (!context) return Error{context.error()};
   context_ = std::move(*context);
-  auto node = Node::create(*context_, options_.name);
+  auto node = ros2::Node::create(*context_, options_.name);
   if (!node) return Error{node.error()};
   node_ = std::move(*node);
   types_ = std::make_unique<TypeFinder>(*node_, options_.types);
@@ -72,15 +72,15 @@ Expected<void> Survey::start() {
 
 Expected<void> Survey::listen() {
   // Best effort and deep: many nodes announce at once when a robot starts.
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 100};
-  auto events = node_->create_subscription<msg::ParameterEvent>(
+  constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 100};
+  auto events = node_->create_subscription<ros2::msg::ParameterEvent>(
       "/parameter_events", kQos,
-      [this](const msg::ParameterEvent& event) { on_parameter_event(event); });
+      [this](const ros2::msg::ParameterEvent& event) { on_parameter_event(event); });
   if (!events) return Error{events.error()};
   parameter_events_ = std::move(*events);
-  auto diagnostics = node_->create_subscription<msg::DiagnosticArray>(
+  auto diagnostics = node_->create_subscription<ros2::msg::DiagnosticArray>(
       "/diagnostics", kQos,
-      [this](const msg::DiagnosticArray& message) { on_diagnostics(message); });
+      [this](const ros2::msg::DiagnosticArray& message) { on_diagnostics(message); });
   if (!diagnostics) return Error{diagnostics.error()};
   diagnostics_ = std::move(*diagnostics);
   return {};
@@ -94,18 +94,18 @@ void Survey::listen_to_log() {
   tasks_->post([this] {
     if (log_) return;
     // Best effort: a reader that dawdles must not hold a node back that logs.
-    constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 100};
-    auto log = node_->create_subscription<msg::Log>("/rosout", kQos,
-                                                    [this](const msg::Log& line) { on_log(line); });
+    constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 100};
+    auto log = node_->create_subscription<ros2::msg::Log>(
+        "/rosout", kQos, [this](const ros2::msg::Log& line) { on_log(line); });
     if (log) log_ = std::move(*log);
   });
 }
 
-void Survey::on_log(const msg::Log& line) {
+void Survey::on_log(const ros2::msg::Log& line) {
   const MutexLock lock(mutex_);
   if (line.name.size() > kMaxShown) return;
   if (log_lines_.size() >= kMaxLoggers && !log_lines_.contains(line.name)) return;
-  std::deque<msg::Log>& lines = log_lines_[line.name];
+  std::deque<ros2::msg::Log>& lines = log_lines_[line.name];
   lines.push_back({.stamp = line.stamp,
                    .level = line.level,
                    .name = line.name,
@@ -116,15 +116,16 @@ void Survey::on_log(const msg::Log& line) {
   if (lines.size() > kMaxLines) lines.pop_front();
 }
 
-std::vector<msg::Log> Survey::log_of(const std::string& logger) const {
-  std::vector<msg::Log> all;
+std::vector<ros2::msg::Log> Survey::log_of(const std::string& logger) const {
+  std::vector<ros2::msg::Log> all;
   const MutexLock lock(mutex_);
   for (const auto& [name, lines] : log_lines_) {
     if (name == logger || name.starts_with(logger + "."))
       all.insert(all.end(), lines.begin(), lines.end());
   }
-  std::ranges::stable_sort(
-      all, {}, [](const msg::Log& line) { return std::pair(line.stamp.sec, line.stamp.nanosec); });
+  std::ranges::stable_sort(all, {}, [](const ros2::msg::Log& line) {
+    return std::pair(line.stamp.sec, line.stamp.nanosec);
+  });
   if (all.size() > kMaxLines) all.erase(all.begin(), all.end() - kMaxLines);
   return all;
 }
@@ -151,7 +152,7 @@ void Survey::end_map_lease() {
     map_asked_ = kLongAgo;
     return;
   }
-  tasks_->post_at(Executor::Clock::now() + kMapLease, [this] { end_map_lease(); });
+  tasks_->post_at(ros2::Executor::Clock::now() + kMapLease, [this] { end_map_lease(); });
 }
 
 LiveInventory Survey::inventory() const {
@@ -163,12 +164,12 @@ LiveInventory Survey::inventory() const {
 LiveInventory Survey::seen() const {
   LiveInventory all;
   const MutexLock lock(mutex_);
-  for (const Graph::NodeView& view : other_nodes()) {
+  for (const ros2::Graph::NodeView& view : other_nodes()) {
     LiveInventory::Node& node = all.nodes[view.node.name];
     const auto reading = nodes_read_.find(view.node.name);
     if (reading != nodes_read_.end()) node = reading->second->told();
     node.pid = view.node.pid;
-    for (const GraphEndpoint& endpoint : view.endpoints) {
+    for (const ros2::GraphEndpoint& endpoint : view.endpoints) {
       const bool publishes = endpoint.kind == EndpointKind::kPublisher;
       if (endpoint.kind == EndpointKind::kServer)
         all.services.emplace(endpoint.name, endpoint.type);
@@ -200,7 +201,7 @@ std::map<std::string, std::map<std::string, Rhythm>> Survey::rhythms_of_publishe
     All all;
     const MutexLock lock(mutex_);
     for (const auto& [topic, reading] : topics_read_) {
-      const std::unordered_map<Guid, Rhythm> of_writers = reading->rhythms();
+      const std::unordered_map<rtps::Guid, Rhythm> of_writers = reading->rhythms();
       std::map<std::string, int> writers;
       for (const auto& [writer, node] : context_->graph().publishers_of(topic)) {
         const auto rhythm = of_writers.find(writer);
@@ -225,19 +226,20 @@ std::map<Survey::StatusKey, StatusCourse> Survey::statuses() const {
   return courses_;
 }
 
-Expected<MessageLibrary> Survey::find_service_type(const std::string& service) {
-  auto found = std::make_shared<std::promise<Expected<MessageLibrary>>>();
+Expected<ros2::MessageLibrary> Survey::find_service_type(const std::string& service) {
+  auto found = std::make_shared<std::promise<Expected<ros2::MessageLibrary>>>();
   tasks_->post([this, service, found] {
-    for (const Graph::NodeView& view : other_nodes()) {
-      const auto offered = std::ranges::find_if(view.endpoints, [&](const GraphEndpoint& each) {
-        return each.kind == EndpointKind::kServer && each.name == service;
-      });
+    for (const ros2::Graph::NodeView& view : other_nodes()) {
+      const auto offered =
+          std::ranges::find_if(view.endpoints, [&](const ros2::GraphEndpoint& each) {
+            return each.kind == EndpointKind::kServer && each.name == service;
+          });
       if (offered == view.endpoints.end()) continue;
       return types_->find(
           {view.node.name, offered->type, offered->service_hash, view.node.pid, offered->type_hash},
-          [found](const Expected<MessageLibrary*>& library) {
-            found->set_value(library ? Expected<MessageLibrary>(**library)
-                                     : Expected<MessageLibrary>(Error{library.error()}));
+          [found](const Expected<ros2::MessageLibrary*>& library) {
+            found->set_value(library ? Expected<ros2::MessageLibrary>(**library)
+                                     : Expected<ros2::MessageLibrary>(Error{library.error()}));
           });
     }
     found->set_value(Error{"no node offers " + service + " any more"});
@@ -247,35 +249,35 @@ Expected<MessageLibrary> Survey::find_service_type(const std::string& service) {
 
 // ---- the graph
 
-void Survey::on_change(const GraphChange& change) {
-  if (const auto* joined = std::get_if<NodeJoined>(&change)) {
+void Survey::on_change(const ros2::GraphChange& change) {
+  if (const auto* joined = std::get_if<ros2::NodeJoined>(&change)) {
     // Its endpoints come next.
     if (joined->node.name != options_.name.full()) read_node(joined->node.name, {});
-  } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
+  } else if (const auto* left = std::get_if<ros2::NodeLeft>(&change)) {
     const MutexLock lock(mutex_);
     nodes_read_.erase(left->node);
-  } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
+  } else if (const auto* endpoint = std::get_if<ros2::EndpointJoined>(&change)) {
     if (endpoint->node != options_.name.full()) on_endpoint(endpoint->node, endpoint->endpoint);
-  } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
+  } else if (const auto* gone = std::get_if<ros2::EndpointLeft>(&change)) {
     on_endpoint_left(*gone);
   }
 }
 
-void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
+void Survey::on_endpoint(const std::string& node, const ros2::GraphEndpoint& endpoint) {
   if (endpoint.kind == EndpointKind::kPublisher) return read_topic(endpoint.name);
   const auto reading = nodes_read_.find(node);
   if (endpoint.kind == EndpointKind::kServer && reading != nodes_read_.end())
     reading->second->service_seen(endpoint.name);
 }
 
-void Survey::on_endpoint_left(const EndpointLeft& gone) {
+void Survey::on_endpoint_left(const ros2::EndpointLeft& gone) {
   if (gone.kind != EndpointKind::kPublisher || offer_of(gone.name)) return;
   const MutexLock lock(mutex_);
   topics_read_.erase(gone.name);
 }
 
-std::vector<Graph::NodeView> Survey::other_nodes() const {
-  std::vector<Graph::NodeView> views = context_->graph().nodes();
+std::vector<ros2::Graph::NodeView> Survey::other_nodes() const {
+  std::vector<ros2::Graph::NodeView> views = context_->graph().nodes();
   std::erase_if(views, [&](const auto& view) { return view.node.name == options_.name.full(); });
   return views;
 }
@@ -285,7 +287,7 @@ std::optional<Survey::Offer> Survey::offer_of(const std::string& topic) const {
   for (const auto& [node, endpoint] : context_->graph().nodes_publishing(topic)) {
     if (node == options_.name.full()) continue;
     if (!offer) offer = Offer{node, endpoint->type, endpoint->type_hash, endpoint->qos};
-    if (offer->qos.durability == Durability::kVolatile) offer->qos = endpoint->qos;
+    if (offer->qos.durability == rtps::Durability::kVolatile) offer->qos = endpoint->qos;
   }
   return offer;
 }
@@ -303,14 +305,14 @@ void Survey::on_interest(LiveInterest interest) {
              wanted->second != before.fields_of_topics.at(t.first);
     });
   }
-  for (const Graph::NodeView& view : other_nodes()) read_node(view.node.name, view.endpoints);
+  for (const ros2::Graph::NodeView& view : other_nodes()) read_node(view.node.name, view.endpoints);
   for (const auto& [topic, fields] : interest_.fields_of_topics) read_topic(topic);
 }
 
-void Survey::read_node(const std::string& node, const std::vector<GraphEndpoint>& endpoints) {
+void Survey::read_node(const std::string& node, const std::vector<ros2::GraphEndpoint>& endpoints) {
   if (!interest_.includes_node(node) || nodes_read_.contains(node)) return;
   auto reading = std::make_unique<NodeReading>(*node_, node);
-  for (const GraphEndpoint& endpoint : endpoints) {
+  for (const ros2::GraphEndpoint& endpoint : endpoints) {
     if (endpoint.kind == EndpointKind::kServer) reading->service_seen(endpoint.name);
   }
   const MutexLock lock(mutex_);
@@ -327,14 +329,14 @@ void Survey::read_topic(const std::string& topic) {
   if (wanted->second.empty()) return read_topic_with(topic, offer->type, nullptr);
   types_->find({offer->publisher, offer->type, offer->type_hash,
                 context_->graph().process_of(offer->publisher)},
-               [this, topic, type = offer->type](const Expected<MessageLibrary*>& library) {
+               [this, topic, type = offer->type](const Expected<ros2::MessageLibrary*>& library) {
                  read_topic_with(topic, type, library);
                });
 }
 
 // Much may have changed until a type was found.
 void Survey::read_topic_with(const std::string& topic, const std::string& type,
-                             const Expected<MessageLibrary*>& library) {
+                             const Expected<ros2::MessageLibrary*>& library) {
   const auto wanted = interest_.fields_of_topics.find(topic);
   const std::optional<Offer> offer = offer_of(topic);
   if (wanted == interest_.fields_of_topics.end() || topics_read_.contains(topic) || !offer) return;
@@ -346,14 +348,14 @@ void Survey::read_topic_with(const std::string& topic, const std::string& type,
   topics_read_.emplace(topic, std::move(reading));
 }
 
-void Survey::on_parameter_event(const msg::ParameterEvent& event) {
+void Survey::on_parameter_event(const ros2::msg::ParameterEvent& event) {
   const auto reading = nodes_read_.find(event.node);
   if (reading != nodes_read_.end()) reading->second->parameters_changed(event);
 }
 
-void Survey::on_diagnostics(const msg::DiagnosticArray& message) {
+void Survey::on_diagnostics(const ros2::msg::DiagnosticArray& message) {
   const MutexLock lock(mutex_);
-  for (const msg::DiagnosticStatus& heard : message.status) {
+  for (const ros2::msg::DiagnosticStatus& heard : message.status) {
     const StatusKey key{heard.name, heard.hardware_id};
     if (statuses_.size() >= kMaxStatuses && !statuses_.contains(key)) continue;
     if (heard.name.size() > kMaxShown || size_of(heard) > kMaxStatus) continue;
@@ -362,7 +364,7 @@ void Survey::on_diagnostics(const msg::DiagnosticArray& message) {
     StatusCourse& course = courses_[key];
     ++course.messages;
     course.worst = std::max(course.worst, heard.level);
-    for (const msg::KeyValue& pair : heard.values) {
+    for (const ros2::msg::KeyValue& pair : heard.values) {
       status.values[pair.key] = pair.value;
       if (course.keys.size() < StatusCourse::kMostKeys || course.keys.contains(pair.key))
         course.keys[pair.key].note(value_from_text(pair.value));
@@ -370,4 +372,4 @@ void Survey::on_diagnostics(const msg::DiagnosticArray& message) {
   }
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

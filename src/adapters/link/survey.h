@@ -23,14 +23,14 @@
 #include "link/type_finder.h"
 #include "ros2/node.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // ask_for() and inventory() may be called from any thread.
 class Survey {
  public:
   struct Options {
-    ParticipantOptions participant;
-    NodeName name{"/", "_culprit_survey"};
+    ros2::ParticipantOptions participant;
+    ros2::NodeName name{"/", "_culprit_survey"};
     TypeFinder::Options types{};
   };
 
@@ -46,7 +46,7 @@ class Survey {
   // Subscribes to /rosout from now on.
   void listen_to_log();
   // The last lines that loggers of this name, and of names below it, wrote since then; the newest last.
-  std::vector<msg::Log> log_of(const std::string& logger) const;
+  std::vector<ros2::msg::Log> log_of(const std::string& logger) const;
   // The content of a map view (map_watch.h), with the cells unless their number is `known`. `wanted`: the topic of the map; empty:
   // the usual one. It subscribes to it at the first call, which finds nothing, and no longer if nobody calls for kMapLease.
   MapPicture map(const std::string& wanted, std::uint64_t known);
@@ -64,7 +64,7 @@ class Survey {
 
   // Returns a library with both messages of an existing service; its node may be asked for them.
   // Waits for that, TypeFinder::kPatience at most. Not on the executor's thread.
-  Expected<MessageLibrary> find_service_type(const std::string& service);
+  Expected<ros2::MessageLibrary> find_service_type(const std::string& service);
 
  private:
   // The publishers of others on a topic.
@@ -72,7 +72,7 @@ class Survey {
     std::string publisher;  // the first node
     std::string type;       // of that one
     std::string type_hash;
-    Qos qos;  // of one of them; of one that latches, if there is one
+    rtps::Qos qos;  // of one of them; of one that latches, if there is one
   };
 
   explicit Survey(Options options);
@@ -80,32 +80,32 @@ class Survey {
   Expected<void> listen();
 
   // On the executor's thread.
-  void on_change(const GraphChange& change);
-  void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
-  void on_endpoint_left(const EndpointLeft& gone);
-  std::vector<Graph::NodeView> other_nodes() const;
+  void on_change(const ros2::GraphChange& change);
+  void on_endpoint(const std::string& node, const ros2::GraphEndpoint& endpoint);
+  void on_endpoint_left(const ros2::EndpointLeft& gone);
+  std::vector<ros2::Graph::NodeView> other_nodes() const;
   std::optional<Offer> offer_of(const std::string& topic) const;
   LiveInventory seen() const;
-  void on_parameter_event(const msg::ParameterEvent& event);
-  void on_diagnostics(const msg::DiagnosticArray& message);
-  void on_log(const msg::Log& line);
+  void on_parameter_event(const ros2::msg::ParameterEvent& event);
+  void on_diagnostics(const ros2::msg::DiagnosticArray& message);
+  void on_log(const ros2::msg::Log& line);
   void on_interest(LiveInterest interest);
   void follow_map(const std::string& wanted);
   void end_map_lease();
-  void read_node(const std::string& node, const std::vector<GraphEndpoint>& endpoints);
+  void read_node(const std::string& node, const std::vector<ros2::GraphEndpoint>& endpoints);
   void read_topic(const std::string& topic);
   void read_topic_with(const std::string& topic, const std::string& type,
-                       const Expected<MessageLibrary*>& library);
+                       const Expected<ros2::MessageLibrary*>& library);
 
   const Options options_;
   LiveInterest interest_;  // of the executor's thread
 
-  Executor executor_;
-  std::unique_ptr<Context> context_;
-  std::unique_ptr<Node> node_;
-  std::unique_ptr<Subscription> parameter_events_;
-  std::unique_ptr<Subscription> diagnostics_;
-  std::unique_ptr<Subscription> log_;
+  ros2::Executor executor_;
+  std::unique_ptr<ros2::Context> context_;
+  std::unique_ptr<ros2::Node> node_;
+  std::unique_ptr<ros2::Subscription> parameter_events_;
+  std::unique_ptr<ros2::Subscription> diagnostics_;
+  std::unique_ptr<ros2::Subscription> log_;
   std::unique_ptr<TypeFinder> types_;
   std::unique_ptr<MapWatch> map_;
   Time map_asked_ = kLongAgo;  // of the executor's thread; kLongAgo: nobody looks
@@ -114,14 +114,15 @@ class Survey {
   mutable Mutex mutex_;
   std::map<StatusKey, LiveInventory::Status> statuses_ CULPRIT_GUARDED_BY(mutex_);
   std::map<StatusKey, StatusCourse> courses_ CULPRIT_GUARDED_BY(mutex_);
-  std::map<std::string, std::deque<msg::Log>> log_lines_ CULPRIT_GUARDED_BY(mutex_);  // by logger
+  std::map<std::string, std::deque<ros2::msg::Log>> log_lines_
+      CULPRIT_GUARDED_BY(mutex_);  // by logger
   // The executor's thread changes these two with the mutex, and reads them without; others read with
   // it.
   std::map<std::string, std::unique_ptr<NodeReading>> nodes_read_;
   std::map<std::string, std::unique_ptr<TopicReading>> topics_read_;
 
-  std::unique_ptr<TaskGroup> tasks_;
+  std::unique_ptr<ros2::TaskGroup> tasks_;
   std::thread thread_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

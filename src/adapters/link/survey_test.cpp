@@ -9,44 +9,44 @@
 #include "ros2/navigation_messages.h"
 #include "ros2/timer.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using namespace std::chrono_literals;
 
 // A managed node with a parameter, a topic and a diagnostic.
 struct SurveyedRobot {
-  explicit SurveyedRobot(const TestDomain& domain) : context(domain.options()) {
+  explicit SurveyedRobot(const ros2::TestDomain& domain) : context(domain.options()) {
     context.run([&] {
-      managed = std::move(*LifecycleNode::create(*context, {"/", "robot"}, {}));
+      managed = std::move(*ros2::LifecycleNode::create(*context, {"/", "robot"}, {}));
       EXPECT_TRUE(managed->node().parameters().declare("gain", Value(1.5)));
-      visibility.emplace(publisher<msg::Float64>("/visibility"));
-      diagnostics.emplace(publisher<msg::DiagnosticArray>("/diagnostics"));
-      ticking = std::make_unique<Timer>(context->executor(), 20ms, [this] { tick(); });
+      visibility.emplace(publisher<ros2::msg::Float64>("/visibility"));
+      diagnostics.emplace(publisher<ros2::msg::DiagnosticArray>("/diagnostics"));
+      ticking = std::make_unique<ros2::Timer>(context->executor(), 20ms, [this] { tick(); });
     });
   }
   ~SurveyedRobot() {
     context.run([&] { ticking.reset(); });
   }
   template <class Message>
-  Publisher<Message> publisher(const std::string& topic) {
+  ros2::Publisher<Message> publisher(const std::string& topic) {
     return std::move(*managed->node().create_publisher<Message>(topic));
   }
   void tick() {
     visibility->publish({2.5});
-    msg::DiagnosticArray array;
+    ros2::msg::DiagnosticArray array;
     array.status = {{1, "motor", "", "m1", {{"temperature", "60.5"}}}};
     diagnostics->publish(array);
   }
 
-  LiveContext context;
-  std::unique_ptr<LifecycleNode> managed;
-  std::optional<Publisher<msg::Float64>> visibility;
-  std::optional<Publisher<msg::DiagnosticArray>> diagnostics;
-  std::unique_ptr<Timer> ticking;
+  ros2::LiveContext context;
+  std::unique_ptr<ros2::LifecycleNode> managed;
+  std::optional<ros2::Publisher<ros2::msg::Float64>> visibility;
+  std::optional<ros2::Publisher<ros2::msg::DiagnosticArray>> diagnostics;
+  std::unique_ptr<ros2::Timer> ticking;
 };
 
-std::unique_ptr<Survey> survey_of(const TestDomain& domain) {
+std::unique_ptr<Survey> survey_of(const ros2::TestDomain& domain) {
   Survey::Options options;
   options.participant = domain.options();
   auto survey = Survey::open(std::move(options));
@@ -57,7 +57,7 @@ std::unique_ptr<Survey> survey_of(const TestDomain& domain) {
 // Looks again and again until the inventory is as wanted.
 template <class Predicate>
 bool shows(const Survey& survey, Predicate wanted) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+  const auto end = std::chrono::steady_clock::now() + rtps::kPatience;
   while (!wanted(survey.inventory())) {
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(5ms);
@@ -66,7 +66,7 @@ bool shows(const Survey& survey, Predicate wanted) {
 }
 
 TEST(Survey, SeesTheGraphAndTheDiagnosticsButNotItself) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const SurveyedRobot robot(domain);
   const auto survey = survey_of(domain);
   EXPECT_TRUE(shows(*survey, [](const LiveInventory& seen) {
@@ -87,7 +87,7 @@ TEST(Survey, SeesTheGraphAndTheDiagnosticsButNotItself) {
 }
 
 TEST(Survey, ReadsWhatIsAskedForAndFollowsIt) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   SurveyedRobot robot(domain);
   const auto survey = survey_of(domain);
   survey->ask_for({{"robot"}, {{"/visibility", {"data", "no.such.field"}}}});
@@ -105,7 +105,7 @@ TEST(Survey, ReadsWhatIsAskedForAndFollowsIt) {
   EXPECT_EQ(survey->fields().at("/visibility").at("data").least, 2.5);
 
   robot.context.run([&] {
-    const msg::Parameter gain{"gain", to_parameter_value(Value(2.5))};
+    const ros2::msg::Parameter gain{"gain", ros2::to_parameter_value(Value(2.5))};
     EXPECT_TRUE(robot.managed->node().parameters().set({&gain, 1}).successful);
   });
   EXPECT_TRUE(shows(*survey, [&](const auto& seen) { return has(seen, 2.5, "unconfigured"); }));
@@ -117,14 +117,14 @@ TEST(Survey, ReadsWhatIsAskedForAndFollowsIt) {
 }
 
 TEST(Survey, MeasuresTheRhythmOfEachPublisherOfATopic) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const SurveyedRobot robot(domain);
-  LiveContext other(domain.options());
-  std::unique_ptr<Node> node;
-  std::optional<Publisher<msg::Float64>> also;
+  ros2::LiveContext other(domain.options());
+  std::unique_ptr<ros2::Node> node;
+  std::optional<ros2::Publisher<ros2::msg::Float64>> also;
   other.run([&] {
-    node = std::move(*Node::create(*other, {"/", "other"}));
-    also.emplace(std::move(*node->create_publisher<msg::Float64>("/visibility")));
+    node = std::move(*ros2::Node::create(*other, {"/", "other"}));
+    also.emplace(std::move(*node->create_publisher<ros2::msg::Float64>("/visibility")));
   });
   const auto survey = survey_of(domain);
   survey->ask_for({.nodes = {}, .fields_of_topics = {{"/visibility", {}}}});
@@ -143,19 +143,19 @@ TEST(Survey, MeasuresTheRhythmOfEachPublisherOfATopic) {
 
 // A robot that drives: its map is published once, before anybody looks.
 struct DrivingRobot {
-  explicit DrivingRobot(const TestDomain& domain) : context(domain.options()) {
+  explicit DrivingRobot(const ros2::TestDomain& domain) : context(domain.options()) {
     context.run([&] {
-      node = std::move(*Node::create(*context, {"/", "robot"}));
-      constexpr Qos kLatched{.durability = Durability::kTransientLocal, .depth = 1};
-      maps.emplace(publisher<msg::OccupancyGrid>("/map", kLatched));
-      costs.emplace(publisher<msg::OccupancyGrid>("/costmap", qos::kDefault));
-      moving.emplace(publisher<msg::TFMessage>("/tf", qos::kDefault));
-      fixed.emplace(publisher<msg::TFMessage>("/tf_static", kLatched));
-      plans.emplace(publisher<msg::Path>("/plan", qos::kDefault));
-      scans.emplace(publisher<msg::LaserScan>("/scan", qos::kSensorData));
+      node = std::move(*ros2::Node::create(*context, {"/", "robot"}));
+      constexpr rtps::Qos kLatched{.durability = rtps::Durability::kTransientLocal, .depth = 1};
+      maps.emplace(publisher<ros2::msg::OccupancyGrid>("/map", kLatched));
+      costs.emplace(publisher<ros2::msg::OccupancyGrid>("/costmap", rtps::qos::kDefault));
+      moving.emplace(publisher<ros2::msg::TFMessage>("/tf", rtps::qos::kDefault));
+      fixed.emplace(publisher<ros2::msg::TFMessage>("/tf_static", kLatched));
+      plans.emplace(publisher<ros2::msg::Path>("/plan", rtps::qos::kDefault));
+      scans.emplace(publisher<ros2::msg::LaserScan>("/scan", rtps::qos::kSensorData));
       maps->publish(map("map", {0, 100}));
       fixed->publish({{edge("base_link", "laser", 0.5)}});
-      ticking = std::make_unique<Timer>(context->executor(), 20ms, [this] { tick(); });
+      ticking = std::make_unique<ros2::Timer>(context->executor(), 20ms, [this] { tick(); });
     });
   }
   ~DrivingRobot() {
@@ -166,14 +166,14 @@ struct DrivingRobot {
     });
   }
   template <class Message>
-  Publisher<Message> publisher(const std::string& topic, const Qos& qos) {
+  ros2::Publisher<Message> publisher(const std::string& topic, const rtps::Qos& qos) {
     return std::move(*node->create_publisher<Message>(topic, qos));
   }
-  static msg::OccupancyGrid map(const char* frame, std::vector<std::int8_t> cells) {
+  static ros2::msg::OccupancyGrid map(const char* frame, std::vector<std::int8_t> cells) {
     const auto width = static_cast<std::uint32_t>(cells.size());
     return {{{}, frame}, {{}, 1, width, 1, {}}, std::move(cells)};
   }
-  static msg::TransformStamped edge(const char* parent, const char* child, double x) {
+  static ros2::msg::TransformStamped edge(const char* parent, const char* child, double x) {
     return {{{}, parent}, child, {{x, 0, 0}, {}}};
   }
   void tick() {
@@ -183,21 +183,21 @@ struct DrivingRobot {
     scans->publish({{{}, "laser"}, 0, 0, 0, 0, 0, 0, 10, {2}, {}});
   }
 
-  LiveContext context;
-  std::unique_ptr<Node> node;
-  std::optional<Publisher<msg::OccupancyGrid>> maps;
-  std::optional<Publisher<msg::OccupancyGrid>> costs;
-  std::optional<Publisher<msg::TFMessage>> moving;
-  std::optional<Publisher<msg::TFMessage>> fixed;
-  std::optional<Publisher<msg::Path>> plans;
-  std::optional<Publisher<msg::LaserScan>> scans;
-  std::unique_ptr<Timer> ticking;
+  ros2::LiveContext context;
+  std::unique_ptr<ros2::Node> node;
+  std::optional<ros2::Publisher<ros2::msg::OccupancyGrid>> maps;
+  std::optional<ros2::Publisher<ros2::msg::OccupancyGrid>> costs;
+  std::optional<ros2::Publisher<ros2::msg::TFMessage>> moving;
+  std::optional<ros2::Publisher<ros2::msg::TFMessage>> fixed;
+  std::optional<ros2::Publisher<ros2::msg::Path>> plans;
+  std::optional<ros2::Publisher<ros2::msg::LaserScan>> scans;
+  std::unique_ptr<ros2::Timer> ticking;
 };
 
 // Asks again and again until the map is as wanted, which is returned.
 template <class Predicate>
 MapPicture map_of(Survey& survey, const std::string& topic, std::uint64_t known, Predicate wanted) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+  const auto end = std::chrono::steady_clock::now() + rtps::kPatience;
   while (true) {
     MapPicture map = survey.map(topic, known);
     if (wanted(map) || std::chrono::steady_clock::now() > end) return map;
@@ -206,7 +206,7 @@ MapPicture map_of(Survey& survey, const std::string& topic, std::uint64_t known,
 }
 
 TEST(Survey, DrawsARobotOnItsMapWhileSomebodyLooks) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   DrivingRobot robot(domain);
   const auto survey = survey_of(domain);
   const auto is_whole = [](const MapPicture& map) {
@@ -231,16 +231,16 @@ TEST(Survey, DrawsARobotOnItsMapWhileSomebodyLooks) {
   EXPECT_DOUBLE_EQ(costs.robots[0].at.x, 2) << "in this map's frame";
   EXPECT_EQ(costs.troubles.size(), 1u) << "the path is in a frame that is not below this one";
 
-  EXPECT_TRUE(robot.context.changes().wait_for_one([](const GraphChange& change) {
-    const auto* left = std::get_if<EndpointLeft>(&change);
+  EXPECT_TRUE(robot.context.changes().wait_for_one([](const ros2::GraphChange& change) {
+    const auto* left = std::get_if<ros2::EndpointLeft>(&change);
     return left != nullptr && left->name == "/tf" && left->kind == EndpointKind::kSubscriber;
   })) << "nobody looks any more";
 }
 
 TEST(Survey, SaysWhyItDoesNotDrawAMap) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   DrivingRobot robot(domain);
-  msg::OccupancyGrid hostile = DrivingRobot::map("map", {0});
+  ros2::msg::OccupancyGrid hostile = DrivingRobot::map("map", {0});
   hostile.info.width = hostile.info.height = 100'000;
   robot.context.run([&] { robot.maps->publish(hostile); });
   const auto survey = survey_of(domain);
@@ -252,11 +252,11 @@ TEST(Survey, SaysWhyItDoesNotDrawAMap) {
 }
 
 TEST(Survey, KeepsNoStatusThatOnlyTakesMemory) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   SurveyedRobot robot(domain);
   const auto survey = survey_of(domain);
   const std::string long_name(300, 'n');
-  msg::DiagnosticArray array;
+  ros2::msg::DiagnosticArray array;
   array.status = {{0, long_name, "", "", {}},
                   {0, "large", "", "", {{"key", std::string(20'000, 'v')}}},
                   {0, "usual", "", "", {}}};
@@ -274,7 +274,7 @@ TEST(Survey, KeepsNoStatusThatOnlyTakesMemory) {
 }
 
 TEST(Survey, ForgetsWhatIsGone) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const auto survey = survey_of(domain);
   {
     const SurveyedRobot robot(domain);
@@ -288,4 +288,4 @@ TEST(Survey, ForgetsWhatIsGone) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

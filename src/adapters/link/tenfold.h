@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class Tenfold {
  public:
@@ -23,4 +23,4 @@ class Tenfold {
   std::uint64_t next_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

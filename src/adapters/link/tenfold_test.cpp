@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 TEST(Tenfold, ReportsTheFirstOnesAndThenEachTenfold) {
@@ -22,4 +22,4 @@ TEST(Tenfold, ReportsTheGreatestCountOnce) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -2,33 +2,34 @@
 
 #include <utility>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-Expected<std::unique_ptr<TopicListener>> TopicListener::open(NodeEntry& self,
+Expected<std::unique_ptr<TopicListener>> TopicListener::open(ros2::NodeEntry& self,
                                                              const std::string& topic,
-                                                             const std::string& type, Keys keys,
-                                                             PayloadUse use, Callbacks callbacks) {
+                                                             const std::string& type,
+                                                             rtps::Keys keys, ros2::PayloadUse use,
+                                                             Callbacks callbacks) {
   std::unique_ptr<TopicListener> listener(
-      new TopicListener(self, topic, type, keys, is_whole(use), std::move(callbacks)));
+      new TopicListener(self, topic, type, keys, ros2::is_whole(use), std::move(callbacks)));
   auto now = listener->subscribe(use);
   if (!now) return Error{now.error()};
   listener->now_ = std::move(*now);
   return listener;
 }
 
-Expected<std::unique_ptr<RawSubscription>> TopicListener::subscribe(PayloadUse use) {
-  const Qos qos{.reliability = Reliability::kBestEffort, .depth = 1, .keys = keys_};
-  return RawSubscription::create(
+Expected<std::unique_ptr<ros2::RawSubscription>> TopicListener::subscribe(ros2::PayloadUse use) {
+  const rtps::Qos qos{.reliability = rtps::Reliability::kBestEffort, .depth = 1, .keys = keys_};
+  return ros2::RawSubscription::create(
       self_, topic_, type_, qos, use,
-      [this](const Sample& sample) {
+      [this](const ros2::Sample& sample) {
         callbacks_.on_arrival(sample);
         read(sample);
       },
       callbacks_.on_unheard);
 }
 
-TopicListener::TopicListener(NodeEntry& self, std::string topic, std::string type, Keys keys,
-                             bool reads, Callbacks callbacks)
+TopicListener::TopicListener(ros2::NodeEntry& self, std::string topic, std::string type,
+                             rtps::Keys keys, bool reads, Callbacks callbacks)
     : self_(self),
       topic_(std::move(topic)),
       type_(std::move(type)),
@@ -36,13 +37,14 @@ TopicListener::TopicListener(NodeEntry& self, std::string topic, std::string typ
       reads_(reads),
       callbacks_(std::move(callbacks)) {}
 
-Expected<void> TopicListener::publisher_offers(const Qos& offered) {
-  const bool latches = offered.durability == Durability::kTransientLocal &&
-                       offered.reliability == Reliability::kReliable;
+Expected<void> TopicListener::publisher_offers(const rtps::Qos& offered) {
+  const bool latches = offered.durability == rtps::Durability::kTransientLocal &&
+                       offered.reliability == rtps::Reliability::kReliable;
   if (!latches || latched_ || !reads_) return {};
-  const Qos qos{.durability = Durability::kTransientLocal, .depth = 1, .keys = keys_};
-  auto latched = RawSubscription::create(self_, topic_, type_, qos, PayloadUse::kWhole,
-                                         [this](const Sample& sample) { read(sample); });
+  const rtps::Qos qos{.durability = rtps::Durability::kTransientLocal, .depth = 1, .keys = keys_};
+  auto latched =
+      ros2::RawSubscription::create(self_, topic_, type_, qos, ros2::PayloadUse::kWhole,
+                                    [this](const ros2::Sample& sample) { read(sample); });
   if (!latched) return Error{latched.error()};
   latched_ = std::move(*latched);
   return {};
@@ -50,13 +52,13 @@ Expected<void> TopicListener::publisher_offers(const Qos& offered) {
 
 // Both receive until the first is removed; repeated samples are passed over.
 Expected<void> TopicListener::hurry() {
-  auto now = subscribe(reads_ ? PayloadUse::kWhole : PayloadUse::kBeginning);
+  auto now = subscribe(reads_ ? ros2::PayloadUse::kWhole : ros2::PayloadUse::kBeginning);
   if (!now) return Error{now.error()};
   now_ = std::move(*now);
   return {};
 }
 
-void TopicListener::read(const Sample& sample) {
+void TopicListener::read(const ros2::Sample& sample) {
   if (!reads_) return;
   const MutexLock lock(mutex_);
   if (is_news(sample.identity)) callbacks_.on_message(sample);
@@ -64,7 +66,7 @@ void TopicListener::read(const Sample& sample) {
 
 // The two readers receive the same samples, one of them sometimes late. A number that is far behind
 // begins a new count.
-bool TopicListener::is_news(const SampleIdentity& identity) {
+bool TopicListener::is_news(const rtps::SampleIdentity& identity) {
   constexpr std::size_t kMaxWriters = 1000;  // the network decides how many there are
   constexpr std::int64_t kFarBehind = 1000;
   if (last_read_.size() >= kMaxWriters) last_read_.clear();
@@ -75,4 +77,4 @@ bool TopicListener::is_news(const SampleIdentity& identity) {
   return true;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -4,16 +4,16 @@
 
 #include "inbox/inbox.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
-std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::string& topic,
-                                                 const std::string& type, Keys keys,
+std::unique_ptr<TopicReading> TopicReading::open(ros2::NodeEntry& self, const std::string& topic,
+                                                 const std::string& type, rtps::Keys keys,
                                                  const std::set<std::string>& fields,
-                                                 const Expected<MessageLibrary*>& library) {
+                                                 const Expected<ros2::MessageLibrary*>& library) {
   std::unique_ptr<TopicReading> reading(new TopicReading);
   for (const std::string& path : fields) {
-    auto reader = library ? FieldReader::compile(**library, type, path)
-                          : Expected<FieldReader>(Error{library.error()});
+    auto reader = library ? ros2::FieldReader::compile(**library, type, path)
+                          : Expected<ros2::FieldReader>(Error{library.error()});
     if (reader) {
       reading->readers_.push_back({path, std::move(*reader)});
     } else {
@@ -24,9 +24,9 @@ std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::str
   // Not kHeader, which has time: rhythms are measured.
   auto listener = TopicListener::open(
       self, topic, type, keys,
-      reading->readers_.empty() ? PayloadUse::kBeginning : PayloadUse::kWhole,
-      {.on_arrival = [raw = reading.get()](const Sample& sample) { raw->on_arrival(sample); },
-       .on_message = [raw = reading.get()](const Sample& sample) { raw->on_message(sample); },
+      reading->readers_.empty() ? ros2::PayloadUse::kBeginning : ros2::PayloadUse::kWhole,
+      {.on_arrival = [raw = reading.get()](const ros2::Sample& sample) { raw->on_arrival(sample); },
+       .on_message = [raw = reading.get()](const ros2::Sample& sample) { raw->on_message(sample); },
        .on_unheard = {}});
   if (!listener) return nullptr;
   reading->listener_ = std::move(*listener);
@@ -34,7 +34,7 @@ std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::str
 }
 
 // If a topic's latched messages cannot be read, the count of messages shows it.
-void TopicReading::publisher_offers(const Qos& offered) {
+void TopicReading::publisher_offers(const rtps::Qos& offered) {
   (void)listener_->publisher_offers(offered);
 }
 
@@ -47,25 +47,25 @@ void TopicReading::note(Arrivals& arrivals, Time now) {
   arrivals.last = now;
 }
 
-void TopicReading::on_arrival(const Sample& sample) {
+void TopicReading::on_arrival(const ros2::Sample& sample) {
   constexpr std::size_t kMaxArrivals = 100'000;  // a flood must not eat the memory
   constexpr std::size_t kMaxWriters = 64;        // the network decides how many there are
   const Time now = live_now();
   const MutexLock lock(mutex_);
   arrivals_.push_back(now);
   note(all_, now);
-  const Guid& writer = sample.identity.writer;
+  const rtps::Guid& writer = sample.identity.writer;
   if (of_writers_.size() < kMaxWriters || of_writers_.contains(writer))
     note(of_writers_[writer], now);
   while (arrivals_.front() < now - kWindow || arrivals_.size() > kMaxArrivals)
     arrivals_.pop_front();
 }
 
-void TopicReading::on_message(const Sample& sample) {
+void TopicReading::on_message(const ros2::Sample& sample) {
   const MutexLock lock(mutex_);
   for (const Field& field : readers_) {
     Value value;
-    if (field.reader.read(sample.payload, value) != FieldStatus::kRead) continue;
+    if (field.reader.read(sample.payload, value) != ros2::FieldStatus::kRead) continue;
     courses_[field.path].note(value);
     values_[field.path] = std::move(value);
   }
@@ -87,8 +87,8 @@ Rhythm TopicReading::rhythm() const {
   return all_.rhythm;
 }
 
-std::unordered_map<Guid, Rhythm> TopicReading::rhythms() const {
-  std::unordered_map<Guid, Rhythm> all;
+std::unordered_map<rtps::Guid, Rhythm> TopicReading::rhythms() const {
+  std::unordered_map<rtps::Guid, Rhythm> all;
   const MutexLock lock(mutex_);
   for (const auto& [writer, arrivals] : of_writers_) all[writer] = arrivals.rhythm;
   return all;
@@ -99,4 +99,4 @@ std::map<std::string, ValueCourse> TopicReading::courses() const {
   return courses_;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

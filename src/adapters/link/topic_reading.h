@@ -18,7 +18,7 @@
 #include "link/topic_listener.h"
 #include "ros2/field_reader.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class TopicReading {
  public:
@@ -27,13 +27,13 @@ class TopicReading {
 
   // `self` outlives the reading; `library` has the type, or the reason why it is not known. Fields
   // that cannot be read are reported. Returns null if the topic cannot be read with this type.
-  static std::unique_ptr<TopicReading> open(NodeEntry& self, const std::string& topic,
-                                            const std::string& type, Keys keys,
+  static std::unique_ptr<TopicReading> open(ros2::NodeEntry& self, const std::string& topic,
+                                            const std::string& type, rtps::Keys keys,
                                             const std::set<std::string>& fields,
-                                            const Expected<MessageLibrary*>& library);
+                                            const Expected<ros2::MessageLibrary*>& library);
 
   // A publisher offers this; the earlier messages of a latched topic are read, too.
-  void publisher_offers(const Qos& offered);
+  void publisher_offers(const rtps::Qos& offered);
 
   // Enters rate and fields. From any thread.
   void tell(LiveInventory::Topic& topic) const;
@@ -41,14 +41,14 @@ class TopicReading {
   // The rhythm of all messages since it was opened. From any thread.
   Rhythm rhythm() const;
   // The same of each writer.
-  std::unordered_map<Guid, Rhythm> rhythms() const;
+  std::unordered_map<rtps::Guid, Rhythm> rhythms() const;
   // The courses of its fields, as above.
   std::map<std::string, ValueCourse> courses() const;
 
  private:
   struct Field {
     std::string path;
-    FieldReader reader;
+    ros2::FieldReader reader;
   };
 
   struct Arrivals {
@@ -58,8 +58,8 @@ class TopicReading {
 
   TopicReading() = default;
   static void note(Arrivals& arrivals, Time now);
-  void on_arrival(const Sample& sample);
-  void on_message(const Sample& sample);
+  void on_arrival(const ros2::Sample& sample);
+  void on_message(const ros2::Sample& sample);
 
   std::vector<Field> readers_;
   std::map<std::string, std::string> unreadable_;  // fields, with the reason
@@ -67,10 +67,10 @@ class TopicReading {
   mutable Mutex mutex_;
   std::deque<Time> arrivals_ CULPRIT_GUARDED_BY(mutex_);
   Arrivals all_ CULPRIT_GUARDED_BY(mutex_);
-  std::unordered_map<Guid, Arrivals> of_writers_ CULPRIT_GUARDED_BY(mutex_);
+  std::unordered_map<rtps::Guid, Arrivals> of_writers_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, Value> values_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, ValueCourse> courses_ CULPRIT_GUARDED_BY(mutex_);
   std::unique_ptr<TopicListener> listener_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

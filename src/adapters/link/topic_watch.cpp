@@ -9,13 +9,13 @@
 #include "ros2/messages.h"
 #include "rtps/receive_thread.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 namespace {
 
 // It may have lain in its socket for a moment. If the wall clock was set meanwhile, it came just now.
-Time arrival_of(const Sample& sample) {
-  constexpr Duration kLongest = 2 * Duration(ReceiveThread::kSoon);
+Time arrival_of(const ros2::Sample& sample) {
+  constexpr Duration kLongest = 2 * Duration(rtps::ReceiveThread::kSoon);
   const Duration ago = std::chrono::system_clock::now() - sample.received;
   const bool is_plausible = ago >= Duration::zero() && ago <= kLongest;
   return live_now() - (is_plausible ? ago : Duration::zero());
@@ -23,7 +23,7 @@ Time arrival_of(const Sample& sample) {
 
 }  // namespace
 
-TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox)
+TopicWatch::TopicWatch(ros2::NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox)
     : self_(self), topic_(topic), rules_(rules), inbox_(inbox) {
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
     const Topic& each = rules.topics[t];
@@ -50,7 +50,7 @@ TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inb
 void TopicWatch::knows_writers(Writers writers) {
   const MutexLock lock(mutex_);
   writers_ = std::move(writers);
-  std::deque<std::pair<Guid, Bytes>> waiting = std::exchange(waiting_, {});
+  std::deque<std::pair<rtps::Guid, rtps::Bytes>> waiting = std::exchange(waiting_, {});
   for (auto& [writer, payload] : waiting) {
     const auto known = writers_.find(writer);
     if (known == writers_.end()) {
@@ -69,7 +69,7 @@ bool TopicWatch::waits_for_writers() const {
 }
 
 // Empty while the writer is not known, or if its node is no component.
-std::optional<ComponentId> TopicWatch::publisher_of(const Guid& writer) {
+std::optional<ComponentId> TopicWatch::publisher_of(const rtps::Guid& writer) {
   {
     const MutexLock lock(mutex_);
     const auto known = writers_.find(writer);
@@ -90,12 +90,12 @@ void TopicWatch::ask() {
   ask_for_writers_();
 }
 
-void TopicWatch::on_arrival(const Sample& sample) {
+void TopicWatch::on_arrival(const ros2::Sample& sample) {
   has_heard_ = true;
   if (!counts_) return;
   const Time at = arrival_of(sample);
-  const SampleGaps::Step step = gaps_.next(sample.identity.writer, sample.identity.sequence,
-                                           self_.context().participant().dropped_here());
+  const ros2::SampleGaps::Step step = gaps_.next(sample.identity.writer, sample.identity.sequence,
+                                                 self_.context().participant().dropped_here());
   const auto put = [&](TopicId topic) {
     inbox_.put({at, SampleArrived{topic, step.published, step.lost_here}}, Urgency::kSoon);
   };
@@ -114,22 +114,23 @@ bool TopicWatch::reads_fields() const {
   });
 }
 
-void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
-                                const Expected<MessageLibrary*>& library) {
+void TopicWatch::publisher_seen(const std::string& type, const rtps::Qos& offered,
+                                const Expected<ros2::MessageLibrary*>& library) {
   const std::string& name = rules_[topic_].name;
   if (listener_ && type != type_)
     return tell_once(name + " is published as " + type + " too; only its " + type_ +
                      " messages are watched");
   if (listener_ && offered.keys != listener_->keys())
     return tell_once(name + " is published with keys and without; only those " +
-                     (listener_->keys() == Keys::kSome ? "with" : "without") +
+                     (listener_->keys() == rtps::Keys::kSome ? "with" : "without") +
                      " them, which came first, are watched");
   if (!listener_) {
-    if (reads_goals_ && type != msg::GoalStatusArray::kType)
+    if (reads_goals_ && type != ros2::msg::GoalStatusArray::kType)
       return tell_once(name + " is published as " + type + ", which is no status of an action");
     const bool has_fields = compile_fields(type, library);
     if (!has_fields && !counts_ && !reads_goals_) return;
-    const PayloadUse use = has_fields || reads_goals_ ? PayloadUse::kWhole : PayloadUse::kHeader;
+    const ros2::PayloadUse use =
+        has_fields || reads_goals_ ? ros2::PayloadUse::kWhole : ros2::PayloadUse::kHeader;
     if (const auto listening = listen(type, offered.keys, use); !listening) {
       return tell_once("cannot watch " + name + ": " + listening.error());
     }
@@ -138,11 +139,11 @@ void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
     tell_once("cannot read the transient local messages of " + name + ": " + latched.error());
 }
 
-Expected<void> TopicWatch::listen(const std::string& type, Keys keys, PayloadUse use) {
+Expected<void> TopicWatch::listen(const std::string& type, rtps::Keys keys, ros2::PayloadUse use) {
   auto listener =
       TopicListener::open(self_, rules_[topic_].name, type, keys, use,
-                          {.on_arrival = [this](const Sample& sample) { on_arrival(sample); },
-                           .on_message = [this](const Sample& sample) { on_message(sample); },
+                          {.on_arrival = [this](const ros2::Sample& sample) { on_arrival(sample); },
+                           .on_message = [this](const ros2::Sample& sample) { on_message(sample); },
                            .on_unheard = [this] { on_unheard(); }});
   if (!listener) return Error{listener.error()};
   type_ = type;
@@ -151,7 +152,8 @@ Expected<void> TopicWatch::listen(const std::string& type, Keys keys, PayloadUse
 }
 
 // Gives whether there is one to read.
-bool TopicWatch::compile_fields(const std::string& type, const Expected<MessageLibrary*>& library) {
+bool TopicWatch::compile_fields(const std::string& type,
+                                const Expected<ros2::MessageLibrary*>& library) {
   std::vector<Field> fields;
   for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
     const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
@@ -161,7 +163,7 @@ bool TopicWatch::compile_fields(const std::string& type, const Expected<MessageL
       tell_once(signal + library.error());
       continue;
     }
-    auto reader = FieldReader::compile(**library, type, field->field);
+    auto reader = ros2::FieldReader::compile(**library, type, field->field);
     if (reader) {
       fields.push_back({SignalId(s), std::move(*reader), rules_[field->topic].publisher, {}});
     } else {
@@ -179,7 +181,7 @@ void TopicWatch::tell_once(std::string trouble) {
     inbox_.put(LinkTrouble{std::move(trouble)});
 }
 
-void TopicWatch::on_message(const Sample& sample) {
+void TopicWatch::on_message(const ros2::Sample& sample) {
   if (reads_goals_) {
     if (auto goals = goals_in(topic_, sample.payload)) inbox_.put(std::move(*goals));
   }
@@ -199,9 +201,9 @@ void TopicWatch::on_message(const Sample& sample) {
   ask();
 }
 
-void TopicWatch::read(Field& field, ByteView payload) {
+void TopicWatch::read(Field& field, rtps::ByteView payload) {
   Value value;
-  if (field.reader.read(payload, value, wall_now()) != FieldStatus::kRead)
+  if (field.reader.read(payload, value, wall_now()) != ros2::FieldStatus::kRead)
     value = unreadable_value();
   value = readable(std::move(value));
   // The same value again changes no trigger; it only proves that the signal is not stale.
@@ -210,12 +212,12 @@ void TopicWatch::read(Field& field, ByteView payload) {
   inbox_.put(SignalRead{field.signal, std::move(value)}, urgency);
 }
 
-void TopicWatch::keep(const Sample& sample) {
+void TopicWatch::keep(const ros2::Sample& sample) {
   if (sample.payload.size() > kLargestWaiting) return;
-  const Guid& writer = sample.identity.writer;
+  const rtps::Guid& writer = sample.identity.writer;
   std::erase_if(waiting_, [&](const auto& message) { return message.first == writer; });
   if (waiting_.size() >= kMostWaiting) waiting_.pop_front();
-  waiting_.emplace_back(writer, Bytes(sample.payload.begin(), sample.payload.end()));
+  waiting_.emplace_back(writer, rtps::Bytes(sample.payload.begin(), sample.payload.end()));
 }
 
 // Samples that cannot be reassembled were published all the same: the topic is not silent.
@@ -229,4 +231,4 @@ void TopicWatch::on_unheard() {
   if (whole_) inbox_.put(SampleArrived{*whole_, 1}, Urgency::kSoon);
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

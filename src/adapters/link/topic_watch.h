@@ -22,16 +22,16 @@
 #include "ros2/field_reader.h"
 #include "ros2/sample_gaps.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class TopicWatch {
  public:
   // All references must outlive the watch.
   // `topic` is the first of its name; those of single publishers (FROM) are watched with it.
-  TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox);
+  TopicWatch(ros2::NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox);
 
   // Which component has made each writer of the topic.
-  using Writers = std::unordered_map<Guid, ComponentId>;
+  using Writers = std::unordered_map<rtps::Guid, ComponentId>;
   // `ask` is called when a message of an unknown writer arrives that may matter: on any thread, at
   // most once a second. To be called before a publisher is discovered.
   void asks_for_writers(std::function<void()> ask) { ask_for_writers_ = std::move(ask); }
@@ -52,28 +52,28 @@ class TopicWatch {
   // A publisher of the topic was discovered: subscribes with its type, unless that is done already.
   // `offered`: its quality of service. `library`: a library with that type; not used where no field
   // is read. On one thread.
-  void publisher_seen(const std::string& type, const Qos& offered,
-                      const Expected<MessageLibrary*>& library);
+  void publisher_seen(const std::string& type, const rtps::Qos& offered,
+                      const Expected<ros2::MessageLibrary*>& library);
 
  private:
   struct Field {
     SignalId signal;
-    FieldReader reader;
+    ros2::FieldReader reader;
     std::optional<ComponentId> publisher;  // FROM
     std::optional<Value> last;
   };
-  bool compile_fields(const std::string& type, const Expected<MessageLibrary*>& library);
-  Expected<void> listen(const std::string& type, Keys keys, PayloadUse use);
+  bool compile_fields(const std::string& type, const Expected<ros2::MessageLibrary*>& library);
+  Expected<void> listen(const std::string& type, rtps::Keys keys, ros2::PayloadUse use);
   void tell_once(std::string trouble);
-  void on_message(const Sample& sample);
-  void keep(const Sample& sample) CULPRIT_REQUIRES(mutex_);
-  void read(Field& field, ByteView payload) CULPRIT_REQUIRES(mutex_);
-  void on_arrival(const Sample& sample);
-  std::optional<ComponentId> publisher_of(const Guid& writer);
+  void on_message(const ros2::Sample& sample);
+  void keep(const ros2::Sample& sample) CULPRIT_REQUIRES(mutex_);
+  void read(Field& field, rtps::ByteView payload) CULPRIT_REQUIRES(mutex_);
+  void on_arrival(const ros2::Sample& sample);
+  std::optional<ComponentId> publisher_of(const rtps::Guid& writer);
   void ask();
   void on_unheard();
 
-  NodeEntry& self_;
+  ros2::NodeEntry& self_;
   const TopicId topic_;
   const RuleSet& rules_;
   Inbox& inbox_;
@@ -90,7 +90,7 @@ class TopicWatch {
   std::set<std::string> told_;  // troubles: each publisher has the same ones
 
   // Used by the receive thread only, once the listener exists.
-  SampleGaps gaps_;
+  ros2::SampleGaps gaps_;
 
   mutable Mutex mutex_;
   Time asked_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;  // for writers
@@ -100,7 +100,7 @@ class TopicWatch {
   // dropped if there are too many.
   static constexpr std::size_t kMostWaiting = 16;
   static constexpr std::size_t kLargestWaiting = std::size_t{1} << 20;  // bytes
-  std::deque<std::pair<Guid, Bytes>> waiting_ CULPRIT_GUARDED_BY(mutex_);
+  std::deque<std::pair<rtps::Guid, rtps::Bytes>> waiting_ CULPRIT_GUARDED_BY(mutex_);
 
   std::atomic<bool> has_heard_ = false;
   std::atomic<bool> told_unheard_ =
@@ -109,4 +109,4 @@ class TopicWatch {
   std::unique_ptr<TopicListener> listener_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

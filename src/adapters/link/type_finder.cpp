@@ -9,7 +9,7 @@
 #include "ros2/names.h"
 #include "ros2/type_description.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,13 +20,13 @@ constexpr std::size_t kMostTold = 1000;
 constexpr std::size_t kLongestDescription = std::size_t{256} << 10;
 constexpr std::size_t kLongestTold = std::size_t{8} << 20;
 
-bool is_what_it_says(MessageLibrary& library, const TypeFinder::Offer& offer) {
+bool is_what_it_says(ros2::MessageLibrary& library, const TypeFinder::Offer& offer) {
   const bool is_known_by_request = offer.hash.empty() && !offer.request_hash.empty();
   const auto hash = library.hash_of(is_known_by_request ? offer.type + "_Request" : offer.type);
   return hash && *hash == (is_known_by_request ? offer.request_hash : offer.hash);
 }
 
-bool has(MessageLibrary& library, const TypeFinder::Offer& offer) {
+bool has(ros2::MessageLibrary& library, const TypeFinder::Offer& offer) {
   if (!offer.is_service()) return library.find(offer.type).has_value();
   return library.find(offer.type + "_Request") && library.find(offer.type + "_Response");
 }
@@ -37,13 +37,13 @@ bool is_hash(const std::string& text) {
          text.find_first_not_of("0123456789abcdef", kBegin.size()) == std::string::npos;
 }
 
-std::optional<MessageLibrary> kept(const fs::path& folder, const TypeFinder::Offer& offer) {
+std::optional<ros2::MessageLibrary> kept(const fs::path& folder, const TypeFinder::Offer& offer) {
   std::error_code error;
   const fs::path file = folder / offer.hash;
   if (folder.empty() || !fs::is_regular_file(file, error)) return std::nullopt;
   const auto text = read_text(file);
   if (!text) return std::nullopt;
-  MessageLibrary library;
+  ros2::MessageLibrary library;
   library.learn(offer.type, *text);
   if (!is_what_it_says(library, offer)) return std::nullopt;
   return library;
@@ -68,23 +68,23 @@ Error unknown(const TypeFinder::Offer& offer, const std::string& why) {
 
 // The files that the process was started with, below its own root directory. Empty for a process
 // that is elsewhere, or may not be read; 0: it is not known.
-MessageLibrary files_of_process(int pid) {
+ros2::MessageLibrary files_of_process(int pid) {
   const auto prefixes = pid == 0 ? std::nullopt : environment_of(pid, "AMENT_PREFIX_PATH");
-  if (!prefixes) return MessageLibrary();
-  return MessageLibrary(message_directories({}, *prefixes),
-                        "/proc/" + std::to_string(pid) + "/root");
+  if (!prefixes) return ros2::MessageLibrary();
+  return ros2::MessageLibrary(ros2::message_directories({}, *prefixes),
+                              "/proc/" + std::to_string(pid) + "/root");
 }
 
 }  // namespace
 
-TypeFinder::TypeFinder(Node& self, Options options)
+TypeFinder::TypeFinder(ros2::Node& self, Options options)
     : self_(self), options_(std::move(options)), library_(options_.message_path) {}
 
 void TypeFinder::find(const Offer& offer, Callback found) {
   if (!is_valid_type_name(offer.type))
     return found(Error{"'" + printable(offer.type) + "' is not the name of a type"});
-  MessageLibrary files = files_of_process(offer.pid);
-  if (MessageLibrary* library = among_files(offer, files)) return found(library);
+  ros2::MessageLibrary files = files_of_process(offer.pid);
+  if (ros2::MessageLibrary* library = among_files(offer, files)) return found(library);
   if (offer.hash.empty())
     return found(unknown(offer, offer.request_hash.empty() ? "" : " as its server means it"));
   if (!is_hash(offer.hash))
@@ -96,7 +96,7 @@ void TypeFinder::find(const Offer& offer, Callback found) {
   ask(offer, std::move(found));
 }
 
-MessageLibrary* TypeFinder::among_files(const Offer& offer, MessageLibrary& files) {
+ros2::MessageLibrary* TypeFinder::among_files(const Offer& offer, ros2::MessageLibrary& files) {
   if (offer.hash.empty() && offer.request_hash.empty()) {
     if (has(files, offer)) return &files;
     return has(library_, offer) ? &library_ : nullptr;
@@ -111,11 +111,12 @@ void TypeFinder::ask(const Offer& offer, Callback found) {
   Question& question = place->second;
   question.waiting.push_back(std::move(found));
   if (!is_new) return;
-  auto client = self_.create_client<srv::GetTypeDescription>(offer.node + "/get_type_description");
-  if (!client) return answered(offer, {CallOutcome::kUnreachable, {}});
+  auto client =
+      self_.create_client<ros2::srv::GetTypeDescription>(offer.node + "/get_type_description");
+  if (!client) return answered(offer, {ros2::CallOutcome::kUnreachable, {}});
   question.client = std::move(*client);
   question.client->call(
-      {offer.type, offer.hash, false}, Repeat::kUntilAnswered, kPatience,
+      {offer.type, offer.hash, false}, ros2::Repeat::kUntilAnswered, kPatience,
       [this, offer](const GetTypeDescription::Answer& answer) { answered(offer, answer); });
 }
 
@@ -123,13 +124,13 @@ void TypeFinder::ask(const Offer& offer, Callback found) {
 void TypeFinder::answered(const Offer& offer, const GetTypeDescription::Answer& answer) {
   Question& question = questions_.at(offer.node + ' ' + offer.hash);
   const std::vector<Callback> waiting = std::exchange(question.waiting, {});
-  const auto tell = [&](const Expected<MessageLibrary*>& library) {
+  const auto tell = [&](const Expected<ros2::MessageLibrary*>& library) {
     for (const Callback& found : waiting) found(library);
   };
   if (!answer.response || !answer.response->successful)
     return tell(unknown(offer, ", and its node does not describe it"));
-  const auto definitions = to_definitions(answer.response->type_description);
-  MessageLibrary library;
+  const auto definitions = ros2::to_definitions(answer.response->type_description);
+  ros2::MessageLibrary library;
   if (definitions) library.define(*definitions);
   // The hash may fit without the type itself: a library makes those of actions and services.
   if (!definitions || !definitions->contains(offer.type) || !is_what_it_says(library, offer))
@@ -146,4 +147,4 @@ void TypeFinder::answered(const Offer& offer, const GetTypeDescription::Answer& 
   tell(&told_.insert_or_assign(offer.hash, std::move(library)).first->second);
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -23,7 +23,7 @@
 #include "ros2/node.h"
 #include "ros2/services.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 // On the executor's thread.
 class TypeFinder {
@@ -46,35 +46,35 @@ class TypeFinder {
   };
   // A library with the type as this node means it (of a service both its messages), while the
   // callback runs. Errors: why there is nothing, and what to do.
-  using Callback = std::function<void(Expected<MessageLibrary*>)>;
+  using Callback = std::function<void(Expected<ros2::MessageLibrary*>)>;
 
   // How long nodes may take to answer.
   static constexpr Duration kPatience = std::chrono::seconds(3);
 
   // `self` outlives the finder.
-  TypeFinder(Node& self, Options options);
+  TypeFinder(ros2::Node& self, Options options);
 
   // At once, or when the node has answered; not after the finder is destroyed.
   void find(const Offer& offer, Callback found);
 
  private:
-  using GetTypeDescription = Client<srv::GetTypeDescription>;
+  using GetTypeDescription = ros2::Client<ros2::srv::GetTypeDescription>;
   struct Question {
     std::unique_ptr<GetTypeDescription> client;
     std::vector<Callback> waiting;  // none once it is answered
   };
 
   // Nothing: neither what we have nor what the process has is what is offered.
-  MessageLibrary* among_files(const Offer& offer, MessageLibrary& files);
+  ros2::MessageLibrary* among_files(const Offer& offer, ros2::MessageLibrary& files);
   void ask(const Offer& offer, Callback found);
   void answered(const Offer& offer, const GetTypeDescription::Answer& answer);
 
-  Node& self_;
+  ros2::Node& self_;
   const Options options_;
-  MessageLibrary library_;                      // of our files
-  std::map<std::string, MessageLibrary> told_;  // by nodes, by hash
-  std::size_t told_bytes_ = 0;                  // of their texts
-  std::map<std::string, Question> questions_;   // by node and hash
+  ros2::MessageLibrary library_;                      // of our files
+  std::map<std::string, ros2::MessageLibrary> told_;  // by nodes, by hash
+  std::size_t told_bytes_ = 0;                        // of their texts
+  std::map<std::string, Question> questions_;         // by node and hash
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -14,37 +14,39 @@
 #include "ros2/live_test.h"
 #include "ros2/type_description.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using DescribeType = srv::GetTypeDescription;
+using DescribeType = ros2::srv::GetTypeDescription;
 
 constexpr const char* kType = "my_msgs/msg/Battery";
 
-MessageDefinitions battery() {
-  return {
-      {kType,
-       {kType,
-        {{.name = "cells", .element = "my_msgs/msg/Cell", .shape = Shape::kSequence, .count = 0},
-         {.name = "charge", .element = Primitive::kFloat64}}}},
-      {"my_msgs/msg/Cell",
-       {"my_msgs/msg/Cell", {{.name = "volts", .element = Primitive::kFloat32}}}}};
+ros2::MessageDefinitions battery() {
+  return {{kType,
+           {kType,
+            {{.name = "cells",
+              .element = "my_msgs/msg/Cell",
+              .shape = ros2::Shape::kSequence,
+              .count = 0},
+             {.name = "charge", .element = ros2::Primitive::kFloat64}}}},
+          {"my_msgs/msg/Cell",
+           {"my_msgs/msg/Cell", {{.name = "volts", .element = ros2::Primitive::kFloat32}}}}};
 }
 
 constexpr const char* kService = "my_msgs/srv/Swap";
 
 // What "my_msgs/srv/Swap" is: it asks for a slot, and is answered by a truth.
-MessageDefinitions swap() {
-  MessageLibrary library;
+ros2::MessageDefinitions swap() {
+  ros2::MessageLibrary library;
   library.learn(std::string(kService) + "_Request", "int32 slot\n");
   library.learn(std::string(kService) + "_Response", "bool ok\n");
   return *library.with_parts(kService);
 }
 
 std::string request_hash(const std::string& text) {
-  MessageLibrary library;
+  ros2::MessageLibrary library;
   library.learn(std::string(kService) + "_Request", text);
   return *library.hash_of(std::string(kService) + "_Request");
 }
@@ -94,10 +96,10 @@ class StartedWith {
 // A finder, and what it finds.
 class Finding {
  public:
-  explicit Finding(const TestDomain& domain, TypeFinder::Options options = {})
+  explicit Finding(const ros2::TestDomain& domain, TypeFinder::Options options = {})
       : context_(domain.options()) {
     context_.run([&] {
-      node_ = std::move(*Node::create(*context_, {"/", "finder"}));
+      node_ = std::move(*ros2::Node::create(*context_, {"/", "finder"}));
       finder_ = std::make_unique<TypeFinder>(*node_, std::move(options));
     });
   }
@@ -112,7 +114,7 @@ class Finding {
   std::string find(TypeFinder::Offer offer) {
     std::promise<std::string> found;
     context_.run([&] {
-      finder_->find(offer, [&](const Expected<MessageLibrary*>& library) {
+      finder_->find(offer, [&](const Expected<ros2::MessageLibrary*>& library) {
         const std::string message = offer.is_service() ? offer.type + "_Request" : offer.type;
         found.set_value(library ? fields_of(**library, message) : library.error());
       });
@@ -121,29 +123,31 @@ class Finding {
   }
 
  private:
-  static std::string fields_of(MessageLibrary& library, const std::string& type) {
+  static std::string fields_of(ros2::MessageLibrary& library, const std::string& type) {
     std::string names;
-    for (const FieldDefinition& field : (*library.find(type))->fields) names += field.name + ' ';
+    for (const ros2::FieldDefinition& field : (*library.find(type))->fields)
+      names += field.name + ' ';
     return names;
   }
 
-  LiveContext context_;
-  std::unique_ptr<Node> node_;
+  ros2::LiveContext context_;
+  std::unique_ptr<ros2::Node> node_;
   std::unique_ptr<TypeFinder> finder_;
 };
 
 // A node as Jazzy's, which describes `told` for any request.
 class TellingNode {
  public:
-  TellingNode(const TestDomain& domain, const MessageDefinitions& told, const char* type = kType)
+  TellingNode(const ros2::TestDomain& domain, const ros2::MessageDefinitions& told,
+              const char* type = kType)
       : context_(domain.options()) {
     context_.run([&] {
-      node_ = std::move(*Node::create(*context_, {"/", "driver"}));
+      node_ = std::move(*ros2::Node::create(*context_, {"/", "driver"}));
       server_ = std::move(*node_->create_service<DescribeType>(
           "~/get_type_description", [told, type](const DescribeType::Request&) {
             DescribeType::Response response;
             response.successful = true;
-            response.type_description = describe(type, told);
+            response.type_description = ros2::describe(type, told);
             return response;
           }));
     });
@@ -156,13 +160,13 @@ class TellingNode {
   }
 
  private:
-  LiveContext context_;
-  std::unique_ptr<Node> node_;
-  std::unique_ptr<ServiceServer> server_;
+  ros2::LiveContext context_;
+  std::unique_ptr<ros2::Node> node_;
+  std::unique_ptr<ros2::ServiceServer> server_;
 };
 
 TEST(TypeFinder, TakesTheFilesOfThePublishersProcessWhereNobodyAnnouncesHashes) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder ours;
   const test::TestFolder its;
   with_file(ours.path(), "int32 old\n");
@@ -173,7 +177,7 @@ TEST(TypeFinder, TakesTheFilesOfThePublishersProcessWhereNobodyAnnouncesHashes) 
 }
 
 TEST(TypeFinder, SaysWhatToDoWhereThereIsNothing) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Finding finding(domain);
   EXPECT_EQ(finding.find({"/driver", kType, "", 0}),
             "the message type my_msgs/msg/Battery is not known; give the directory that holds "
@@ -183,20 +187,20 @@ TEST(TypeFinder, SaysWhatToDoWhereThereIsNothing) {
 }
 
 TEST(TypeFinder, TakesNoFileOfAnotherTypeThanTheOnePublished) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder ours;
   const test::TestFolder its;
   with_file(ours.path(), "int32 old\n");
   const StartedWith process(with_file(its.path(), "int32 real\n"));
   Finding finding(domain, {{ours.path()}, {}});
-  MessageLibrary real({its.path()});
+  ros2::MessageLibrary real({its.path()});
   EXPECT_EQ(finding.find({"/driver", kType, *real.hash_of(kType), process.pid()}), "real ");
 }
 
 TEST(TypeFinder, AsksTheNodeAndKeepsWhatItSays) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder kept;
-  const std::string hash = type_hash(kType, battery());
+  const std::string hash = ros2::type_hash(kType, battery());
   const test::TestFolder ours;
   with_file(ours.path(), "int32 old\n");
   {
@@ -210,10 +214,10 @@ TEST(TypeFinder, AsksTheNodeAndKeepsWhatItSays) {
 }
 
 TEST(TypeFinder, BelievesNobodyWhoseWordsDoNotFitTheHash) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder kept;
-  const std::string hash = type_hash(kType, battery());
-  MessageDefinitions forged = battery();
+  const std::string hash = ros2::type_hash(kType, battery());
+  ros2::MessageDefinitions forged = battery();
   forged.at(kType).fields.pop_back();
   const TellingNode driver(domain, forged);
   std::ofstream(kept.path() / hash) << "int32 forged\n";
@@ -226,13 +230,13 @@ TEST(TypeFinder, BelievesNobodyWhoseWordsDoNotFitTheHash) {
 
 // The parts of an action are enough to make the type of its feedback, and so to know its hash.
 TEST(TypeFinder, TakesNoDescriptionThatLacksTheType) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder kept;
   constexpr const char* kPart = "my_msgs/action/Go_Feedback";
   constexpr const char* kWhole = "my_msgs/action/Go_FeedbackMessage";
-  const MessageDefinitions told = {
-      {kPart, {kPart, {{.name = "left", .element = Primitive::kFloat64}}}}};
-  MessageLibrary library;
+  const ros2::MessageDefinitions told = {
+      {kPart, {kPart, {{.name = "left", .element = ros2::Primitive::kFloat64}}}}};
+  ros2::MessageLibrary library;
   library.define(told);
   const std::string hash = *library.hash_of(kWhole);
   const TellingNode driver(domain, told, kPart);
@@ -242,22 +246,22 @@ TEST(TypeFinder, TakesNoDescriptionThatLacksTheType) {
 }
 
 TEST(TypeFinder, TakesNoDescriptionWithoutAnEnd) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder kept;
-  MessageDefinitions told = battery();
+  ros2::MessageDefinitions told = battery();
   const std::string name(200, 'c');
   for (int i = 0; i < 1500; ++i)
     told.at(kType).fields.push_back(
-        {.name = name + std::to_string(i), .element = Primitive::kFloat64});
+        {.name = name + std::to_string(i), .element = ros2::Primitive::kFloat64});
   const TellingNode driver(domain, told);
   Finding finding(domain, {{}, kept.path() / "types"});
-  EXPECT_THAT(finding.find({"/driver", kType, type_hash(kType, told), 0}),
+  EXPECT_THAT(finding.find({"/driver", kType, ros2::type_hash(kType, told), 0}),
               HasSubstr("its node's description is too long"));
   EXPECT_FALSE(fs::exists(kept.path() / "types"));
 }
 
 TEST(TypeFinder, TakesTheFilesOfTheServersProcessForAService) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder ours;
   const test::TestFolder its;
   const std::string file = std::string(kService) + ".srv";
@@ -274,7 +278,7 @@ TEST(TypeFinder, TakesTheFilesOfTheServersProcessForAService) {
 // From Iron to Kilted: the node cannot be asked, but a request that the server would misread is not
 // sent.
 TEST(TypeFinder, TakesNoFileOfAnotherServiceThanTheOneOffered) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder ours;
   const std::string file = std::string(kService) + ".srv";
   with_file(ours.path(), "int32 slot\n---\nbool ok\n", file);
@@ -286,11 +290,11 @@ TEST(TypeFinder, TakesNoFileOfAnotherServiceThanTheOneOffered) {
 
 // From Lyrical on.
 TEST(TypeFinder, AsksTheNodeWhatItsServiceLooksLike) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   const test::TestFolder kept;
   const test::TestFolder ours;
   with_file(ours.path(), "int32 old\n---\n", std::string(kService) + ".srv");
-  const TypeFinder::Offer offer{"/driver", kService, type_hash(kService, swap()), 0,
+  const TypeFinder::Offer offer{"/driver", kService, ros2::type_hash(kService, swap()), 0,
                                 request_hash("int32 slot\n")};
   {
     const TellingNode driver(domain, swap(), kService);
@@ -303,11 +307,11 @@ TEST(TypeFinder, AsksTheNodeWhatItsServiceLooksLike) {
 }
 
 TEST(TypeFinder, WaitsForNobodyForEver) {
-  const TestDomain domain;
+  const ros2::TestDomain domain;
   Finding finding(domain);
-  EXPECT_THAT(finding.find({"/driver", kType, type_hash(kType, battery()), 0}),
+  EXPECT_THAT(finding.find({"/driver", kType, ros2::type_hash(kType, battery()), 0}),
               HasSubstr("its node does not describe it"));
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -14,12 +14,12 @@
 #include "base/time.h"
 #include "rtps/guid.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class WaitingLines {
  public:
   struct Line {
-    Guid writer;
+    rtps::Guid writer;
     LogLevel level;
     Time at;
   };
@@ -48,7 +48,7 @@ class WaitingLines {
 
   const std::size_t most_;
   std::deque<Line> lines_;
-  std::unordered_map<Guid, std::size_t> of_writer_;  // their number
+  std::unordered_map<rtps::Guid, std::size_t> of_writer_;  // their number
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

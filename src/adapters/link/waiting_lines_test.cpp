@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
-Guid writer_of_lines(std::uint8_t number) {
-  Guid guid;
+rtps::Guid writer_of_lines(std::uint8_t number) {
+  rtps::Guid guid;
   guid.bytes[0] = number;
   return guid;
 }
@@ -44,4 +44,4 @@ TEST(WaitingLines, OfManyWritersAreBounded) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

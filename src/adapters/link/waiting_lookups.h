@@ -10,7 +10,7 @@
 
 #include "rtps/guid.h"
 
-namespace culprit::ros2 {
+namespace culprit::link {
 
 class WaitingLookups {
  public:
@@ -20,7 +20,7 @@ class WaitingLookups {
   explicit WaitingLookups(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   // A message of this size has come. Unless kNone, the caller looks up its writer and then calls done().
-  Room admit(const Guid& writer, std::size_t size) {
+  Room admit(const rtps::Guid& writer, std::size_t size) {
     if (bytes_ + size <= most_bytes_) {
       bytes_ += size;
       return Room::kMessage;
@@ -28,7 +28,7 @@ class WaitingLookups {
     const bool has_room = alone_.size() < kMostWriters && alone_.insert(writer).second;
     return has_room ? Room::kWriterOnly : Room::kNone;
   }
-  void done(const Guid& writer, std::size_t size, Room room) {
+  void done(const rtps::Guid& writer, std::size_t size, Room room) {
     if (room == Room::kMessage) bytes_ -= size;
     if (room == Room::kWriterOnly) alone_.erase(writer);
   }
@@ -36,7 +36,7 @@ class WaitingLookups {
  private:
   const std::size_t most_bytes_;
   std::size_t bytes_ = 0;
-  std::set<Guid> alone_;  // writers without their message
+  std::set<rtps::Guid> alone_;  // writers without their message
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::link {
 namespace {
 
 using Room = WaitingLookups::Room;
 
-Guid guid_of(std::size_t number) {
-  Guid guid;
+rtps::Guid guid_of(std::size_t number) {
+  rtps::Guid guid;
   guid.bytes[0] = static_cast<std::uint8_t>(number);
   guid.bytes[1] = static_cast<std::uint8_t>(number >> 8);
   return guid;
@@ -16,8 +16,8 @@ Guid guid_of(std::size_t number) {
 
 TEST(WaitingLookups, OfAFloodKeepNoOtherWriterUnknown) {
   WaitingLookups waiting(100);
-  const Guid flood = guid_of(1);
-  const Guid driver = guid_of(2);
+  const rtps::Guid flood = guid_of(1);
+  const rtps::Guid driver = guid_of(2);
   EXPECT_EQ(waiting.admit(flood, 100), Room::kMessage);
   EXPECT_EQ(waiting.admit(driver, 10), Room::kWriterOnly);
   EXPECT_EQ(waiting.admit(driver, 10), Room::kNone) << "it is looked up already";
@@ -35,4 +35,4 @@ TEST(WaitingLookups, AreBounded) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::link

@@ -74,7 +74,7 @@ Expected<void> ModeManager::open(ros2::Executor& executor) {
 }
 
 Expected<void> ModeManager::open_voice(const modes::Entity& entity) {
-  constexpr ros2::Qos kLast{.depth = 1};
+  constexpr rtps::Qos kLast{.depth = 1};
   auto modes = node_->create_publisher<msg::ModeEvent>(entity.name + "/mode_event", kLast);
   if (!modes) return Error{modes.error()};
   auto mode_requests =
@@ -168,7 +168,7 @@ Expected<void> ModeManager::open_services(const modes::Entity& entity) {
 
 Expected<void> ModeManager::watch_parameters() {
   auto events = node_->create_subscription<ros2::msg::ParameterEvent>(
-      "/parameter_events", ros2::qos::kParameterEvents,
+      "/parameter_events", rtps::qos::kParameterEvents,
       [this](const ros2::msg::ParameterEvent& event) {
         const auto link = links_.find(event.node);
         if (link == links_.end()) return;

@@ -10,8 +10,8 @@
 namespace culprit::mode_manager {
 namespace {
 
-using ros2::EventLog;
-using ros2::kPatience;
+using rtps::EventLog;
+using rtps::kPatience;
 
 constexpr const char* kManagedPlant = R"(
 plant: {ros__parameters: {type: system, parts: pump, modes: {
@@ -91,9 +91,9 @@ struct Asker {
     const auto client =
         std::move(*ros2::ServiceClient::create(node, {service, std::string(Service::kType)}));
     EventLog<typename Service::Response> answers;
-    client->call(ros2::encode(request), ros2::Repeat::kUntilAnswered, kPatience,
+    client->call(rtps::encode(request), ros2::Repeat::kUntilAnswered, kPatience,
                  [&](const ros2::CallResult& result) {
-                   const auto response = ros2::decode<typename Service::Response>(result.reply);
+                   const auto response = rtps::decode<typename Service::Response>(result.reply);
                    answers.add(response ? *response : typename Service::Response{});
                  });
     EXPECT_TRUE(answers.wait_for_count(1)) << service;

@@ -27,7 +27,7 @@ NodeLink::NodeLink(ros2::Node& self, const modes::Entity& node, Ears ears)
 
 Expected<void> NodeLink::open(ros2::Node& self) {
   auto transitions = self.create_subscription<ros2::msg::TransitionEvent>(
-      node_.name + "/transition_event", ros2::qos::kDefault,
+      node_.name + "/transition_event", rtps::qos::kDefault,
       [this](const ros2::msg::TransitionEvent& event) {
         has_told_state_ = true;
         ears_.on_state(static_cast<LifecycleState>(event.goal_state.id));
@@ -36,18 +36,18 @@ Expected<void> NodeLink::open(ros2::Node& self) {
   transitions_ = std::move(*transitions);
   auto lifecycle = ros2::ServiceClient::create(
       self.entry(), {node_.name + "/change_state", std::string(ros2::srv::ChangeState::kType)},
-      ros2::qos::kServices,
+      rtps::qos::kServices,
       {{node_.name + "/get_state", std::string(ros2::srv::GetState::kType)},
-       ros2::encode(ros2::srv::GetState::Request{})});
+       rtps::encode(ros2::srv::GetState::Request{})});
   if (!lifecycle) return Error{lifecycle.error()};
   lifecycle_ = std::move(*lifecycle);
   auto parameters = ros2::ServiceClient::create(
       self.entry(),
       {node_.name + "/set_parameters_atomically",
        std::string(ros2::srv::SetParametersAtomically::kType)},
-      ros2::qos::kParameterServices,
+      rtps::qos::kParameterServices,
       {{node_.name + "/get_parameters", std::string(ros2::srv::GetParameters::kType)},
-       ros2::encode(ros2::srv::GetParameters::Request{})});
+       rtps::encode(ros2::srv::GetParameters::Request{})});
   if (!parameters) return Error{parameters.error()};
   parameters_ = std::move(*parameters);
   return {};
@@ -56,11 +56,11 @@ Expected<void> NodeLink::open(ros2::Node& self) {
 void NodeLink::read() {
   has_told_state_ = false;
   announced_.clear();
-  lifecycle_->probe()->call(ros2::encode(ros2::srv::GetState::Request{}), Repeat::kUntilAnswered,
+  lifecycle_->probe()->call(rtps::encode(ros2::srv::GetState::Request{}), Repeat::kUntilAnswered,
                             kJoining, [this](const CallResult& result) {
                               if (result.outcome != CallOutcome::kAnswered) return;
                               const auto response =
-                                  ros2::decode<ros2::srv::GetState::Response>(result.reply);
+                                  rtps::decode<ros2::srv::GetState::Response>(result.reply);
                               if (!response) return;
                               tasks_.post([this, id = response->current_state.id] {
                                 if (!has_told_state_)
@@ -73,10 +73,10 @@ void NodeLink::read() {
 
 void NodeLink::read_parameter(const std::string& parameter) {
   parameters_->probe()->call(
-      ros2::encode(ros2::srv::GetParameters::Request{{parameter}}), Repeat::kUntilAnswered,
+      rtps::encode(ros2::srv::GetParameters::Request{{parameter}}), Repeat::kUntilAnswered,
       kJoining, [this, parameter](const CallResult& result) {
         if (result.outcome != CallOutcome::kAnswered) return;
-        const auto response = ros2::decode<ros2::srv::GetParameters::Response>(result.reply);
+        const auto response = rtps::decode<ros2::srv::GetParameters::Response>(result.reply);
         if (!response || response->values.size() != 1) return;
         const auto value = ros2::to_value(response->values.front());
         if (!value) return;
@@ -93,11 +93,11 @@ void NodeLink::announced(const std::string& parameter, const Value& value) {
 
 void NodeLink::change(ros2::TransitionId transition) {
   const ros2::msg::Transition wanted{static_cast<std::uint8_t>(transition), ""};
-  lifecycle_->call(ros2::encode(ros2::srv::ChangeState::Request{wanted}), Repeat::kNever, kPatience,
+  lifecycle_->call(rtps::encode(ros2::srv::ChangeState::Request{wanted}), Repeat::kNever, kPatience,
                    [this, transition](const CallResult& result) {
                      const auto response =
                          result.outcome == CallOutcome::kAnswered
-                             ? ros2::decode<ros2::srv::ChangeState::Response>(result.reply)
+                             ? rtps::decode<ros2::srv::ChangeState::Response>(result.reply)
                              : std::nullopt;
                      if (response && response->success) return;
                      const std::string asked =
@@ -115,10 +115,10 @@ void NodeLink::set(const std::map<std::string, Value>& parameters) {
   for (const auto& [name, value] : parameters)
     request.parameters.push_back({name, ros2::to_parameter_value(value)});
   parameters_->call(
-      ros2::encode(request), Repeat::kNever, kPatience, [this](const CallResult& result) {
+      rtps::encode(request), Repeat::kNever, kPatience, [this](const CallResult& result) {
         const auto response =
             result.outcome == CallOutcome::kAnswered
-                ? ros2::decode<ros2::srv::SetParametersAtomically::Response>(result.reply)
+                ? rtps::decode<ros2::srv::SetParametersAtomically::Response>(result.reply)
                 : std::nullopt;
         if (response && response->result.successful) return;
         const std::string why =

@@ -55,17 +55,18 @@ Expected<ServiceClient*> ContainerClients::client(const std::string& container, 
                                : ServiceName{service_of_container(container, "unload_node"),
                                              std::string(srv::UnloadNode::kType)};
   auto made = which == Which::kList
-                  ? ServiceClient::create(self_, name, qos::kServices)
-                  : ServiceClient::create(self_, name, qos::kServices,
-                                          {{list}, encode(srv::ListNodes::Request{})});
+                  ? ServiceClient::create(self_, name, rtps::qos::kServices)
+                  : ServiceClient::create(self_, name, rtps::qos::kServices,
+                                          {{list}, rtps::encode(srv::ListNodes::Request{})});
   if (!made) return Error{"cannot call " + name.name + ": " + made.error()};
   client = std::move(*made);
   return client.get();
 }
 
-std::variant<Bytes, ContainerAnswer> ContainerClients::call(const std::string& container,
-                                                            Which which, int pid, Bytes request,
-                                                            Duration patience) {
+std::variant<rtps::Bytes, ContainerAnswer> ContainerClients::call(const std::string& container,
+                                                                  Which which, int pid,
+                                                                  rtps::Bytes request,
+                                                                  Duration patience) {
   constexpr Duration kProof = std::chrono::seconds(1);
   const auto to = client(container, which);
   if (!to) return ContainerAnswer{Outcome::kUnreachable, to.error()};
@@ -100,9 +101,10 @@ std::variant<Bytes, ContainerAnswer> ContainerClients::call(const std::string& c
 }
 
 ContainerAnswer ContainerClients::list(const std::string& container, int pid, Duration patience) {
-  auto reply = call(container, Which::kList, pid, encode(srv::ListNodes::Request{}), patience);
+  auto reply =
+      call(container, Which::kList, pid, rtps::encode(srv::ListNodes::Request{}), patience);
   if (auto* none = std::get_if<ContainerAnswer>(&reply)) return std::move(*none);
-  const auto response = decode<srv::ListNodes::Response>(std::get<Bytes>(reply));
+  const auto response = rtps::decode<srv::ListNodes::Response>(std::get<rtps::Bytes>(reply));
   if (!response || response->full_node_names.size() != response->unique_ids.size() ||
       response->unique_ids.size() > kMostLoaded)
     return {Outcome::kRefused, container + " answered the list of nodes in a wrong form"};
@@ -127,9 +129,9 @@ ContainerAnswer ContainerClients::load(const Component& component, int pid, Dura
     if (!parameters) return {Outcome::kRefused, parameters.error()};
     request.parameters = std::move(*parameters);
   }
-  auto reply = call(how.container, Which::kLoad, pid, encode(request), patience);
+  auto reply = call(how.container, Which::kLoad, pid, rtps::encode(request), patience);
   if (auto* none = std::get_if<ContainerAnswer>(&reply)) return std::move(*none);
-  const auto response = decode<srv::LoadNode::Response>(std::get<Bytes>(reply));
+  const auto response = rtps::decode<srv::LoadNode::Response>(std::get<rtps::Bytes>(reply));
   if (!response) return {Outcome::kRefused, how.container + " answered the load in a wrong form"};
   if (!response->success)
     return {Outcome::kRefused, how.container + " did not load " + how.plugin + " of " +
@@ -139,9 +141,10 @@ ContainerAnswer ContainerClients::load(const Component& component, int pid, Dura
 
 ContainerAnswer ContainerClients::unload(const std::string& container, int pid, std::uint64_t id,
                                          Duration patience) {
-  auto reply = call(container, Which::kUnload, pid, encode(srv::UnloadNode::Request{id}), patience);
+  auto reply =
+      call(container, Which::kUnload, pid, rtps::encode(srv::UnloadNode::Request{id}), patience);
   if (auto* none = std::get_if<ContainerAnswer>(&reply)) return std::move(*none);
-  const auto response = decode<srv::UnloadNode::Response>(std::get<Bytes>(reply));
+  const auto response = rtps::decode<srv::UnloadNode::Response>(std::get<rtps::Bytes>(reply));
   if (!response) return {Outcome::kRefused, container + " answered the unload in a wrong form"};
   if (!response->success) return {Outcome::kRefused, printable(response->error_message)};
   return {};

@@ -42,14 +42,14 @@ class ContainerClients : public ContainerServices {
   enum class Which : std::uint8_t { kList, kLoad, kUnload };
   struct Call {
     std::optional<ros2::CallOutcome> outcome{};
-    ros2::Bytes reply{};
+    rtps::Bytes reply{};
     int process = 0;  // that answered; 0: not proven
   };
 
   Expected<ros2::ServiceClient*> client(const std::string& container, Which which);
   // The payload of the reply, or why there is none.
-  std::variant<ros2::Bytes, ContainerAnswer> call(const std::string& container, Which which,
-                                                  int pid, ros2::Bytes request, Duration patience);
+  std::variant<rtps::Bytes, ContainerAnswer> call(const std::string& container, Which which,
+                                                  int pid, rtps::Bytes request, Duration patience);
 
   ros2::NodeEntry& self_;
   const Contest contest_;

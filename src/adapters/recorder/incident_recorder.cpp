@@ -20,7 +20,7 @@ constexpr int kNice = 10;
 void be_less_urgent() { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }
 
 RecordedTopic text_topic(const char* name) {
-  return {name, std::string(ros2::msg::String::kType), "", "string data\n", {ros2::Qos{}}};
+  return {name, std::string(ros2::msg::String::kType), "", "string data\n", {rtps::Qos{}}};
 }
 
 void stamp(RingMessage& message) {
@@ -79,7 +79,7 @@ void IncidentRecorder::take(RingMessage message, Share share) {
   ring_.push(std::move(message), share);
 }
 
-void IncidentRecorder::take_latched(RingMessage message, const ros2::Guid& publisher, Share share) {
+void IncidentRecorder::take_latched(RingMessage message, const rtps::Guid& publisher, Share share) {
   if (message.topic == kNoTopic) return;
   stamp(message);
   ring_.latch(message, publisher);
@@ -87,7 +87,7 @@ void IncidentRecorder::take_latched(RingMessage message, const ros2::Guid& publi
 }
 
 RingMessage IncidentRecorder::told(std::size_t topic, const std::string& json) const {
-  return {.topic = topic, .sent = wall_now(), .payload = ros2::encode(ros2::msg::String{json})};
+  return {.topic = topic, .sent = wall_now(), .payload = rtps::encode(ros2::msg::String{json})};
 }
 
 void IncidentRecorder::note_event(const std::string& json) { take(told(events_, json)); }

@@ -71,7 +71,7 @@ class IncidentRecorder {
   // `number` and `at` are filled in, and `received`, if it is not given, with the same moment.
   void take(RingMessage message, Share share = Share::kSmall);
   // As take(), for a latched topic, whose last message stays.
-  void take_latched(RingMessage message, const ros2::Guid& publisher, Share share);
+  void take_latched(RingMessage message, const rtps::Guid& publisher, Share share);
 
   // An event of culprit (a failure, a decision, an action): a JSON document.
   void note_event(const std::string& json);

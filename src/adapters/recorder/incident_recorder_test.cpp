@@ -69,10 +69,10 @@ struct Recorders : testing::Test {
 };
 
 RingMessage text(std::size_t topic, const std::string& what) {
-  return {.topic = topic, .payload = ros2::encode(ros2::msg::String{what})};
+  return {.topic = topic, .payload = rtps::encode(ros2::msg::String{what})};
 }
 RecordedTopic topic_called(const char* name) {
-  return {name, "std_msgs/msg/String", "", "string data\n", {ros2::Qos{}}};
+  return {name, "std_msgs/msg/String", "", "string data\n", {rtps::Qos{}}};
 }
 
 // Texts by topic, from a recording without other content.
@@ -82,7 +82,7 @@ std::multimap<std::string, std::string> texts_in(const std::filesystem::path& pa
   if (!file) return all;
   for (bag::BagMessage message; file->next(message);) {
     const auto* begin = reinterpret_cast<const std::uint8_t*>(message.bytes.data());
-    const auto said = ros2::decode<ros2::msg::String>({begin, message.bytes.size()});
+    const auto said = rtps::decode<ros2::msg::String>({begin, message.bytes.size()});
     all.emplace(file->contents().topics()[message.topic].name, said ? said->data : "?");
   }
   EXPECT_THAT(file->contents().losses(), IsEmpty());
@@ -227,7 +227,7 @@ TEST_F(Recorders, LeaveAFileThatCanBeReadWhenTheDiskIsFull) {
       recorder.begin("Dead");
       unsigned random = 1;
       for (int i = 0; i < 200; ++i) {
-        RingMessage message{.topic = noise, .payload = ros2::Bytes(20'000)};
+        RingMessage message{.topic = noise, .payload = rtps::Bytes(20'000)};
         for (auto& byte : message.payload)
           byte = static_cast<std::uint8_t>((random = random * 1664525 + 1013904223) >> 24);
         recorder.take(std::move(message));
@@ -287,8 +287,8 @@ TEST_F(Recorders, HoldNobodyUpWhileTheDiskDoesNotAnswer) {
 }
 
 TEST(OfferedQos, IsWrittenAsRosbag2ReadsIt) {
-  ros2::Qos latched;
-  latched.durability = ros2::Durability::kTransientLocal;
+  rtps::Qos latched;
+  latched.durability = rtps::Durability::kTransientLocal;
   EXPECT_EQ(
       offered_qos_profiles({latched}),
       "- history: 3\n  depth: 0\n  reliability: 1\n  durability: 1\n"

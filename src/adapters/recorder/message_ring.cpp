@@ -32,7 +32,7 @@ void MessageRing::push(RingMessage message, Share share) {
   part.messages.push_back(std::move(shared));
 }
 
-void MessageRing::latch(RingMessage message, const ros2::Guid& publisher) {
+void MessageRing::latch(RingMessage message, const rtps::Guid& publisher) {
   const std::size_t size = size_of(message);
   const std::pair key(message.topic, publisher);
   auto shared = std::make_shared<const RingMessage>(std::move(message));

@@ -30,7 +30,7 @@ struct RingMessage {
   Time at{};                   // when it came, by the clock that never jumps
   std::int64_t received = 0;   // the same by the wall clock, nanoseconds since 1970
   std::int64_t sent = 0;       // by its publisher's clock
-  ros2::Bytes payload;         // with its encapsulation
+  rtps::Bytes payload;         // with its encapsulation
 };
 using SharedMessage = std::shared_ptr<const RingMessage>;
 
@@ -52,7 +52,7 @@ class MessageRing {
 
   void push(RingMessage message, Share share);
   // It stays until its publisher publishes another one. It is not given by after().
-  void latch(RingMessage message, const ros2::Guid& publisher);
+  void latch(RingMessage message, const rtps::Guid& publisher);
 
   // Those after `number` that came at `since` or later, in the order in which they came; so many bytes of them, and at least one if there
   // is one.
@@ -81,7 +81,7 @@ class MessageRing {
   const Limits limits_;
   mutable Mutex mutex_;
   std::array<Part, 2> parts_ CULPRIT_GUARDED_BY(mutex_);  // by Share
-  std::map<std::pair<std::size_t, ros2::Guid>, SharedMessage> latched_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<std::pair<std::size_t, rtps::Guid>, SharedMessage> latched_ CULPRIT_GUARDED_BY(mutex_);
   std::size_t latched_bytes_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::uint64_t last_ CULPRIT_GUARDED_BY(mutex_) = 0;      // number given
   std::uint64_t taken_ CULPRIT_GUARDED_BY(mutex_) = 0;     // the highest that after() gave

@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 
 RingMessage message_of(std::size_t bytes, Duration at, std::size_t topic = 0) {
-  return {.topic = topic, .at = Time(at), .payload = ros2::Bytes(bytes)};
+  return {.topic = topic, .at = Time(at), .payload = rtps::Bytes(bytes)};
 }
 
 std::vector<std::size_t> sizes(const std::vector<SharedMessage>& messages) {
@@ -43,8 +43,8 @@ TEST(MessageRing, GivesWhatIsNewInTheOrderInWhichItCame) {
 
 TEST(MessageRing, KeepsTheLastWordOfALatchedTopicHoweverOldItIs) {
   MessageRing ring(kRoomy);
-  const ros2::Guid one{{1}};
-  const ros2::Guid other{{2}};
+  const rtps::Guid one{{1}};
+  const rtps::Guid other{{2}};
   ring.latch(message_of(1, 0s), one);
   ring.latch(message_of(2, 1s), other);
   ring.latch(message_of(3, 2s), one);
@@ -78,7 +78,7 @@ RC_GTEST_PROP(MessageRing, NeverHoldsMoreThanItMay, ()) {
     const Share share = *rc::gen::element(Share::kSmall, Share::kLarge);
     const std::size_t room = share == Share::kSmall ? limits.small_bytes : limits.large_bytes;
     if (*rc::gen::arbitrary<bool>())
-      ring.latch(message_of(bytes, now), ros2::Guid{{*rc::gen::inRange<std::uint8_t>(0, 4)}});
+      ring.latch(message_of(bytes, now), rtps::Guid{{*rc::gen::inRange<std::uint8_t>(0, 4)}});
     ring.push(message_of(bytes, now), share);
     RC_ASSERT(ring.bytes(Share::kSmall) <= limits.small_bytes);
     RC_ASSERT(ring.bytes(Share::kLarge) <= limits.large_bytes);

@@ -30,7 +30,7 @@ template <class Message>
 RecordedTopic topic_of_type(const char* name) {
   const std::string type(Message::kType);
   ros2::MessageLibrary library;
-  return {name, type, "", ros2::to_text(type, *library.with_parts(type)), {ros2::Qos{}}};
+  return {name, type, "", ros2::to_text(type, *library.with_parts(type)), {rtps::Qos{}}};
 }
 
 struct PeerMcap : testing::Test {
@@ -49,8 +49,8 @@ struct PeerMcap : testing::Test {
     diagnostics.status.resize(1);
     diagnostics.status[0].name = "lens";
     diagnostics.status[0].values = {{"dirt", "0.7"}};
-    for (int i = 0; i < 3; ++i) recorder.take({.topic = log, .payload = ros2::encode(line)});
-    recorder.take({.topic = health, .payload = ros2::encode(diagnostics)});
+    for (int i = 0; i < 3; ++i) recorder.take({.topic = log, .payload = rtps::encode(line)});
+    recorder.take({.topic = health, .payload = rtps::encode(diagnostics)});
     recorder.take({.topic = odd, .payload = {0, 1, 0, 0, 1}});
     recorder.note_event(R"({"type":"strategy_chosen","text":"camera is held responsible"})");
     const auto made = recorder.record_now("a person", std::chrono::seconds(20));

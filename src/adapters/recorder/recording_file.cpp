@@ -12,17 +12,17 @@ namespace {
 
 // rmw/types.h; RMW_DURATION_INFINITE is the greatest number of nanoseconds.
 std::string rmw_time(Duration time) {
-  const std::int64_t nanoseconds = time == ros2::kInfinite ? INT64_MAX : time.count();
+  const std::int64_t nanoseconds = time == rtps::kInfinite ? INT64_MAX : time.count();
   constexpr std::int64_t kSecond = 1'000'000'000;
   return "\n    sec: " + std::to_string(nanoseconds / kSecond) +
          "\n    nsec: " + std::to_string(nanoseconds % kSecond) + "\n";
 }
 
-std::string rmw_profile(const ros2::Qos& qos) {
+std::string rmw_profile(const rtps::Qos& qos) {
   constexpr int kUnknownHistory = 3;  // it is not announced
-  const int reliability = qos.reliability == ros2::Reliability::kReliable ? 1 : 2;
-  const int durability = qos.durability == ros2::Durability::kTransientLocal ? 1 : 2;
-  const int liveliness = qos.liveliness == ros2::Liveliness::kAutomatic ? 1 : 3;
+  const int reliability = qos.reliability == rtps::Reliability::kReliable ? 1 : 2;
+  const int durability = qos.durability == rtps::Durability::kTransientLocal ? 1 : 2;
+  const int liveliness = qos.liveliness == rtps::Liveliness::kAutomatic ? 1 : 3;
   return "- history: " + std::to_string(kUnknownHistory) +
          "\n  depth: 0\n  reliability: " + std::to_string(reliability) +
          "\n  durability: " + std::to_string(durability) +
@@ -32,15 +32,15 @@ std::string rmw_profile(const ros2::Qos& qos) {
          "  avoid_ros_namespace_conventions: false\n";
 }
 
-std::string_view as_text(const ros2::Bytes& bytes) {
+std::string_view as_text(const rtps::Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 }  // namespace
 
-std::string offered_qos_profiles(const std::vector<ros2::Qos>& offers) {
+std::string offered_qos_profiles(const std::vector<rtps::Qos>& offers) {
   std::string all;
-  for (const ros2::Qos& offer : offers) all += rmw_profile(offer);
+  for (const rtps::Qos& offer : offers) all += rmw_profile(offer);
   return all;
 }
 

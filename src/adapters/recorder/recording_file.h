@@ -24,14 +24,14 @@ namespace culprit::recorder {
 
 // The text of "offered_qos_profiles" in rosbag2's channels: a list in YAML, with the numbers of
 // rmw/types.h.
-std::string offered_qos_profiles(const std::vector<ros2::Qos>& offers);
+std::string offered_qos_profiles(const std::vector<rtps::Qos>& offers);
 
 struct RecordedTopic {
   std::string name;
   std::string type;                       // "sensor_msgs/msg/Image"
   std::string type_hash;                  // empty before Iron
   std::optional<std::string> definition;  // as ros2msg; nothing: it is not known
-  std::vector<ros2::Qos> offers;          // of its publishers, as they were seen last
+  std::vector<rtps::Qos> offers;          // of its publishers, as they were seen last
 };
 
 // One thread.

@@ -29,7 +29,7 @@ RecordedTopic described(const std::string& topic, const ros2::Graph::Publishers&
   return about;
 }
 
-std::int64_t nanoseconds_of(ros2::SystemTime time) { return time.time_since_epoch().count(); }
+std::int64_t nanoseconds_of(rtps::SystemTime time) { return time.time_since_epoch().count(); }
 
 }  // namespace
 
@@ -39,8 +39,8 @@ class RobotTap::Listening {
   Listening(RobotTap& tap, std::string topic, std::size_t number, bool may_be_given_up)
       : tap_(tap), topic_(std::move(topic)), number_(number), may_be_given_up_(may_be_given_up) {}
 
-  Expected<void> open(ros2::NodeEntry& self, const std::string& type, ros2::Keys keys) {
-    auto listener = ros2::TopicListener::open(
+  Expected<void> open(ros2::NodeEntry& self, const std::string& type, rtps::Keys keys) {
+    auto listener = link::TopicListener::open(
         self, topic_, type, keys, ros2::PayloadUse::kWholeLater,
         {.on_arrival =
              [this](const ros2::Sample& sample) {
@@ -53,10 +53,10 @@ class RobotTap::Listening {
     return {};
   }
 
-  void publisher_offers(const ros2::Qos& offered) {
+  void publisher_offers(const rtps::Qos& offered) {
     // If there can be no second reader, the topic is received once only.
     (void)listener_->publisher_offers(offered);
-    if (offered.durability == ros2::Durability::kTransientLocal && topic_ != kLog)
+    if (offered.durability == rtps::Durability::kTransientLocal && topic_ != kLog)
       is_latched_ = true;
   }
 
@@ -115,7 +115,7 @@ class RobotTap::Listening {
   bool is_given_up_ = false;
   Time measured_since_ = kNever;
   std::uint64_t measured_ = 0;                     // bytes
-  std::unique_ptr<ros2::TopicListener> listener_;  // last: its callbacks use the others
+  std::unique_ptr<link::TopicListener> listener_;  // last: its callbacks use the others
 };
 
 Expected<std::unique_ptr<RobotTap>> RobotTap::open(Options options, IncidentRecorder& recorder) {
@@ -152,7 +152,7 @@ Expected<void> RobotTap::start() {
   auto node = ros2::Node::create(*context_, {"/", "_culprit_recorder_" + std::to_string(getpid())});
   if (!node) return Error{node.error()};
   node_ = std::move(*node);
-  types_ = std::make_unique<ros2::TypeFinder>(*node_, options_.types);
+  types_ = std::make_unique<link::TypeFinder>(*node_, options_.types);
   thread_ = std::thread([this] { executor_.run(); });
   return {};
 }

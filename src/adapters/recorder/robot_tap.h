@@ -38,7 +38,7 @@ class RobotTap {
 
   struct Options {
     ros2::ParticipantOptions participant;
-    ros2::TypeFinder::Options types{};
+    link::TypeFinder::Options types{};
     TopicChoice topics{{}};
     Duration before{};            // that is recorded
     std::size_t large_bytes = 0;  // of memory for large messages
@@ -87,7 +87,7 @@ class RobotTap {
   std::unique_ptr<ros2::TaskGroup> tasks_;
   std::unique_ptr<ros2::Context> context_;
   std::unique_ptr<ros2::Node> node_;
-  std::unique_ptr<ros2::TypeFinder> types_;
+  std::unique_ptr<link::TypeFinder> types_;
   std::thread thread_;
 };
 

@@ -29,7 +29,7 @@ struct RobotTaps : testing::Test {
     return std::move(*opened);
   }
   std::unique_ptr<ros2::RawPublisher> publisher(const char* topic, const char* type,
-                                                const ros2::Qos& qos = {}) {
+                                                const rtps::Qos& qos = {}) {
     return std::move(*ros2::RawPublisher::create(node, topic, type, qos));
   }
 
@@ -38,7 +38,7 @@ struct RobotTaps : testing::Test {
   // Their sizes, in the order in which they came.
   std::vector<std::size_t> sizes_recorded(const std::string& topic) {
     std::vector<std::size_t> sizes;
-    const auto made = recorder.record_now("test", ros2::kPatience);
+    const auto made = recorder.record_now("test", rtps::kPatience);
     if (!made) return sizes;
     const std::string written = "messages: " + made->string();
     written_down.wait_for_one(
@@ -52,9 +52,9 @@ struct RobotTaps : testing::Test {
     return sizes;
   }
   // Publishes again and again until `is_enough`; false if it never is.
-  bool publish_until(ros2::RawPublisher& from, const ros2::Bytes& payload,
+  bool publish_until(ros2::RawPublisher& from, const rtps::Bytes& payload,
                      const std::function<bool()>& is_enough) {
-    for (const Time end = live_now() + ros2::kPatience; live_now() < end;) {
+    for (const Time end = live_now() + rtps::kPatience; live_now() < end;) {
       from.publish(payload);
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       if (is_enough()) return true;
@@ -64,8 +64,8 @@ struct RobotTaps : testing::Test {
 
   ros2::TestDomain domain;
   test::TestFolder own;
-  ros2::EventLog<std::string> said;
-  ros2::EventLog<std::string> written_down;
+  rtps::EventLog<std::string> said;
+  rtps::EventLog<std::string> written_down;
   IncidentRecorder recorder{{.folder = own.path(),
                              .robot = "robot",
                              .library = "test",
@@ -76,11 +76,11 @@ struct RobotTaps : testing::Test {
 };
 
 TEST_F(RobotTaps, HearWhatWasLatchedBeforeTheyCame) {
-  constexpr ros2::Qos kLatched{.durability = ros2::Durability::kTransientLocal, .depth = 1};
+  constexpr rtps::Qos kLatched{.durability = rtps::Durability::kTransientLocal, .depth = 1};
   const auto map = publisher("/map", "std_msgs/msg/String", kLatched);
-  map->publish(ros2::encode(ros2::msg::String{"walls"}));
+  map->publish(rtps::encode(ros2::msg::String{"walls"}));
   const auto hears = tap({}, 1'000'000);
-  const Time end = live_now() + ros2::kPatience;
+  const Time end = live_now() + rtps::kPatience;
   std::size_t count = 0;
   while (count == 0 && live_now() < end) count = recorded("/map");
   EXPECT_EQ(count, 1) << "one of the two readers receives it";
@@ -92,12 +92,12 @@ TEST_F(RobotTaps, GiveUpWhatIsTooLargeAndSayItOnce) {
   const auto hears = tap({}, 1'000'000);
   ros2::msg::Image image;
   image.data.resize(300'000);
-  EXPECT_TRUE(publish_until(*camera, ros2::encode(image), [&] {
+  EXPECT_TRUE(publish_until(*camera, rtps::encode(image), [&] {
     return std::ranges::any_of(said.all(), [](const std::string& text) {
       return text.find("/camera is not recorded") != std::string::npos;
     });
   }));
-  for (int i = 0; i < 5; ++i) camera->publish(ros2::encode(image));
+  for (int i = 0; i < 5; ++i) camera->publish(rtps::encode(image));
   EXPECT_TRUE(publish_until(*odd, {0, 1, 0, 0, 1}, [&] { return recorded("/odd") > 0; }))
       << "a message of an unknown type is kept";
   EXPECT_THAT(said.all(), SizeIs(2));
@@ -109,7 +109,7 @@ TEST_F(RobotTaps, HearWhatBecomesLargeOnTheWay) {
   const auto scan = publisher("/scan", "std_msgs/msg/String");
   const auto hears = tap({}, 1'000'000);
   const auto of_size = [](std::size_t size) {  // so that nothing has to be filled up
-    return ros2::encode(ros2::msg::String{std::string(size, 'x')});
+    return rtps::encode(ros2::msg::String{std::string(size, 'x')});
   };
   EXPECT_TRUE(publish_until(*scan, of_size(99), [&] { return recorded("/scan") > 3; }));
   const std::vector<std::size_t> sizes = {99, RobotTap::kSmall + 99, 39'999, 99, 39'999};
@@ -128,7 +128,7 @@ TEST_F(RobotTaps, KeepWhatIsNamedHoweverLargeItIs) {
   const auto hears = tap({"/cam*"}, 1);
   ros2::msg::Image image;
   image.data.resize(300'000);
-  EXPECT_TRUE(publish_until(*camera, ros2::encode(image), [&] { return recorded("/camera") > 3; }));
+  EXPECT_TRUE(publish_until(*camera, rtps::encode(image), [&] { return recorded("/camera") > 3; }));
   EXPECT_THAT(said.all(), SizeIs(0));
 }
 

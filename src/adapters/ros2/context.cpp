@@ -50,10 +50,10 @@ Graph::Options Context::with_context(Graph::Options options) {
 std::string Context::source_of(const ParticipantInfo& info) const {
   if (has_helper_) return HelperGraph::source_of(info);
   if (has_server_) return "";
-  const std::vector<UdpAddress> from = participant_->origin_of(info.guid.prefix()).addresses;
+  const std::vector<rtps::UdpAddress> from = participant_->origin_of(info.guid.prefix()).addresses;
   if (from.empty()) return "unknown";
   const auto& ip = from.front().ip;
-  if (ip[0] == 127 || own_addresses().contains(ip)) return "";
+  if (ip[0] == 127 || rtps::own_addresses().contains(ip)) return "";
   std::string text;
   for (const std::uint8_t part : ip) text += (text.empty() ? "" : ".") + std::to_string(part);
   return text;
@@ -93,7 +93,7 @@ Expected<void> Context::open(const ParticipantOptions& options) {
 
   auto writer = participant_->create_writer({.topic = std::string(kDiscoveryInfoTopic),
                                              .type = std::string(kDiscoveryInfoType),
-                                             .qos = qos::kDiscoveryInfoWriter,
+                                             .qos = rtps::qos::kDiscoveryInfoWriter,
                                              .user_data = {},
                                              .on_match = {}});
   if (!writer) return Error{writer.error()};
@@ -111,11 +111,11 @@ Expected<void> Context::listen_to_infos() {
   auto reader = participant_->create_reader(
       {.topic = std::string(kDiscoveryInfoTopic),
        .type = std::string(kDiscoveryInfoType),
-       .qos = qos::kDiscoveryInfoReader,
+       .qos = rtps::qos::kDiscoveryInfoReader,
        .user_data = {},
        .on_match = {}},
       [this](const Sample& sample) {
-        hear(RawInfo{Bytes(sample.payload.begin(), sample.payload.end()),
+        hear(RawInfo{rtps::Bytes(sample.payload.begin(), sample.payload.end()),
                      sample.identity.writer.prefix()});
       });
   if (!reader) return Error{reader.error()};
@@ -153,7 +153,7 @@ std::string Context::unique_id() {
     const MutexLock lock(mutex_);
     number = next_id_++;
   }
-  Guid id = participant_->guid();
+  rtps::Guid id = participant_->guid();
   for (std::size_t i = 15; i >= 12; --i, number >>= 8)
     id.bytes[i] = static_cast<std::uint8_t>(number);
   constexpr std::string_view kDigits = "0123456789abcdef";
@@ -236,7 +236,7 @@ void Context::discovered(const DiscoveryEvent& event) {
   graph_.apply(event);
   note_return(event);
   if (discovery_listener_) discovery_listener_(event);
-  const auto* endpoint = std::get_if<EndpointInfo>(&event);
+  const auto* endpoint = std::get_if<rtps::EndpointInfo>(&event);
   if (endpoint == nullptr || gid_size_) return;
   // Iron and newer put the hash of the type into the user data of every endpoint. So does a culprit
   // on any robot.
@@ -249,7 +249,7 @@ void Context::discovered(const DiscoveryEvent& event) {
   });
 }
 
-void Context::on_info(const Bytes& payload, const GuidPrefix& sender) {
+void Context::on_info(const rtps::Bytes& payload, const rtps::GuidPrefix& sender) {
   if (sender == participant_->guid().prefix()) return;
   const auto info = decode_discovery_info(payload);
   if (!info || info->participant.prefix() != sender) return;  // a participant announces only itself
@@ -280,7 +280,7 @@ void Context::announce() {
     for (const NodeEntry* node : nodes_) {
       NodeEntities& entities =
           info.nodes.emplace_back(NodeEntities{node->name_.name_space, node->name_.name, {}, {}});
-      for (const Guid& endpoint : node->endpoints_) {
+      for (const rtps::Guid& endpoint : node->endpoints_) {
         (endpoint.is_reader() ? entities.readers : entities.writers).push_back(endpoint);
       }
     }
@@ -304,7 +304,7 @@ NodeEntry::~NodeEntry() {
   context_.schedule_announcement();
 }
 
-void NodeEntry::add(const Guid& endpoint) {
+void NodeEntry::add(const rtps::Guid& endpoint) {
   {
     const MutexLock lock(context_.mutex_);
     endpoints_.insert(endpoint);
@@ -312,7 +312,7 @@ void NodeEntry::add(const Guid& endpoint) {
   context_.schedule_announcement();
 }
 
-void NodeEntry::remove(const Guid& endpoint) {
+void NodeEntry::remove(const rtps::Guid& endpoint) {
   {
     const MutexLock lock(context_.mutex_);
     endpoints_.erase(endpoint);

@@ -82,8 +82,8 @@ class Context {
 
   // From a participant: the announcement of its nodes, as it came.
   struct RawInfo {
-    Bytes payload;
-    GuidPrefix sender;
+    rtps::Bytes payload;
+    rtps::GuidPrefix sender;
   };
   using Heard = std::variant<DiscoveryEvent, RawInfo>;
   // From any thread, in the order in which it is to be taken in.
@@ -93,7 +93,7 @@ class Context {
   void take_in();
   void discovered(const DiscoveryEvent& event);
   void note_return(const DiscoveryEvent& event);
-  void on_info(const Bytes& payload, const GuidPrefix& sender);
+  void on_info(const rtps::Bytes& payload, const rtps::GuidPrefix& sender);
   void decide(GidSize size);
   void announce();
   void on_server_left(const std::string& service);
@@ -107,7 +107,7 @@ class Context {
   bool is_deciding_ = false;
   bool has_server_ = false;
   bool has_helper_ = false;
-  std::set<GuidPrefix> lost_;  // participants whose leases ran out
+  std::set<rtps::GuidPrefix> lost_;  // participants whose leases ran out
   bool is_listening_anew_ = false;
   DiscoveryCallback discovery_listener_;  // may be empty
   // Recent proofs. So a process of many nodes is looked up once, not for each of them.
@@ -116,7 +116,7 @@ class Context {
     FoundProcess found;
     Time until;
   };
-  std::map<GuidPrefix, Proof> proofs_;
+  std::map<rtps::GuidPrefix, Proof> proofs_;
 
   Mutex mutex_;
   bool is_open_ CULPRIT_GUARDED_BY(mutex_) =
@@ -144,15 +144,15 @@ class NodeEntry {
   Context& context() const { return context_; }
   const NodeName& name() const { return name_; }
 
-  void add(const Guid& endpoint);
-  void remove(const Guid& endpoint);
+  void add(const rtps::Guid& endpoint);
+  void remove(const rtps::Guid& endpoint);
 
  private:
   friend class Context;
 
   Context& context_;
   const NodeName name_;
-  std::set<Guid> endpoints_;  // guarded by the context's mutex
+  std::set<rtps::Guid> endpoints_;  // guarded by the context's mutex
 };
 
 }  // namespace culprit::ros2

@@ -23,13 +23,13 @@ class Stranger {
       : participant_(std::move(*Participant::create(domain.options(), [](DiscoveryEvent) {}))) {
     writer_ = std::move(*participant_->create_writer({std::string(kDiscoveryInfoTopic),
                                                       std::string(kDiscoveryInfoType),
-                                                      qos::kDiscoveryInfoWriter,
+                                                      rtps::qos::kDiscoveryInfoWriter,
                                                       "",
                                                       {}}));
     reader_ = std::move(
         *participant_->create_reader({std::string(kDiscoveryInfoTopic),
                                       std::string(kDiscoveryInfoType),
-                                      qos::kDiscoveryInfoReader,
+                                      rtps::qos::kDiscoveryInfoReader,
                                       PayloadUse::kWhole,
                                       "",
                                       {}},
@@ -41,18 +41,18 @@ class Stranger {
   void says(const NodeEntities& node, GidSize size) {
     writer_->write(encode_discovery_info({participant_->guid(), {node}}, size));
   }
-  void says(const Bytes& payload) { writer_->write(payload); }
-  EventLog<Bytes>& heard() { return heard_; }
+  void says(const rtps::Bytes& payload) { writer_->write(payload); }
+  rtps::EventLog<rtps::Bytes>& heard() { return heard_; }
   Participant& participant() { return *participant_; }
 
  private:
-  EventLog<Bytes> heard_;
+  rtps::EventLog<rtps::Bytes> heard_;
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Writer> writer_;
   std::unique_ptr<Reader> reader_;
 };
 
-bool names_a_node(const Bytes& payload, const std::string& name) {
+bool names_a_node(const rtps::Bytes& payload, const std::string& name) {
   const auto info = decode_discovery_info(payload);
   return info && info->nodes.size() == 1 && info->nodes.front().name == name;
 }
@@ -82,9 +82,9 @@ TEST(Context, EndpointsComeAndGoWithTheirOwners) {
   const TestDomain domain;
   LiveContext watcher(domain.options()), robot(domain.options());
   NodeEntry node(*robot, {"/", "a"});
-  auto publisher = RawPublisher::create(node, "~/t", msg::Float64::kType, qos::kDefault);
-  auto subscription =
-      Subscription::create(node, "t", msg::Float64::kType, qos::kDefault, [](ByteView) {});
+  auto publisher = RawPublisher::create(node, "~/t", msg::Float64::kType, rtps::qos::kDefault);
+  auto subscription = Subscription::create(node, "t", msg::Float64::kType, rtps::qos::kDefault,
+                                           [](rtps::ByteView) {});
   ASSERT_TRUE(publisher);
   ASSERT_TRUE(subscription);
   EXPECT_TRUE(watcher.sees_endpoint("/a", EndpointKind::kPublisher, "/a/t"));
@@ -130,8 +130,8 @@ TEST(Context, SpeaksWithTheGidSizeOfItsFirstPeer) {
     const NodeEntry node(*context, {"/", "a"});
     ASSERT_TRUE(context.sees_node("/stranger"));
     ASSERT_TRUE(stranger.heard().wait_for_one(
-        [](const Bytes& payload) { return names_a_node(payload, "a"); }));
-    for (const Bytes& payload : stranger.heard().all()) EXPECT_EQ(gid_size_of(payload), size);
+        [](const rtps::Bytes& payload) { return names_a_node(payload, "a"); }));
+    for (const rtps::Bytes& payload : stranger.heard().all()) EXPECT_EQ(gid_size_of(payload), size);
   }
 }
 
@@ -179,10 +179,10 @@ TEST(Context, SurvivesNonsenseFromAPeer) {
   const TestDomain domain;
   LiveContext context(domain.options());
   Stranger stranger(domain);
-  stranger.says(Bytes{0, 1, 0, 0});
-  stranger.says(Bytes{9, 9, 9, 9, 9});
-  stranger.says(Bytes(60, 0xff));
-  Guid other;
+  stranger.says(rtps::Bytes{0, 1, 0, 0});
+  stranger.says(rtps::Bytes{9, 9, 9, 9, 9});
+  stranger.says(rtps::Bytes(60, 0xff));
+  rtps::Guid other;
   other.bytes[0] = 1;
   stranger.says(
       encode_discovery_info({other, {{"/", "of_another", {}, {}}}}, GidSize::kHumbleAndOlder));
@@ -203,17 +203,17 @@ TEST(Context, ChangesMadeInOneGoAreAnnouncedOnce) {
   LiveContext context(domain.options());
   NodeEntry node(*context, {"/", "a"});
   ASSERT_TRUE(stranger.heard().wait_for_one(
-      [](const Bytes& payload) { return names_a_node(payload, "a"); }));
+      [](const rtps::Bytes& payload) { return names_a_node(payload, "a"); }));
   const std::size_t before = stranger.heard().all().size();
   context.run([&] {
     for (std::uint8_t i = 1; i <= 50; ++i) {
-      Guid guid = context->participant().guid();
+      rtps::Guid guid = context->participant().guid();
       guid.bytes[12] = i;
       guid.bytes[15] = 3;
       node.add(guid);
     }
   });
-  ASSERT_TRUE(stranger.heard().wait_for_one([](const Bytes& payload) {
+  ASSERT_TRUE(stranger.heard().wait_for_one([](const rtps::Bytes& payload) {
     const auto info = decode_discovery_info(payload);
     return info && !info->nodes.empty() && info->nodes.front().writers.size() == 50;
   }));

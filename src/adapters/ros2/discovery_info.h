@@ -28,23 +28,23 @@ enum class GidSize : std::uint8_t { kIronAndNewer = 16, kHumbleAndOlder = 24 };
 struct NodeEntities {
   std::string name_space;
   std::string name;
-  std::vector<Guid> readers;
-  std::vector<Guid> writers;
+  std::vector<rtps::Guid> readers;
+  std::vector<rtps::Guid> writers;
   bool operator==(const NodeEntities&) const = default;
 };
 
 struct DiscoveryInfo {
-  Guid participant;
+  rtps::Guid participant;
   std::vector<NodeEntities> nodes;
   bool operator==(const DiscoveryInfo&) const = default;
 };
 
 // With 16 bytes, bytes 16..23 of the body hold the (non-zero) number of nodes; with 24, the zeros
 // of the first gid.
-GidSize gid_size_of(ByteView payload);
+GidSize gid_size_of(rtps::ByteView payload);
 
-std::optional<DiscoveryInfo> decode_discovery_info(ByteView payload);
+std::optional<DiscoveryInfo> decode_discovery_info(rtps::ByteView payload);
 
-Bytes encode_discovery_info(const DiscoveryInfo& info, GidSize size);
+rtps::Bytes encode_discovery_info(const DiscoveryInfo& info, GidSize size);
 
 }  // namespace culprit::ros2

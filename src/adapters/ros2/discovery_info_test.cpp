@@ -8,8 +8,8 @@
 namespace culprit::ros2 {
 namespace {
 
-Guid guid(std::uint8_t first) {
-  Guid g;
+rtps::Guid guid(std::uint8_t first) {
+  rtps::Guid g;
   std::iota(g.bytes.begin(), g.bytes.end(), first);
   return g;
 }
@@ -18,18 +18,18 @@ DiscoveryInfo one_node() {
   return {guid(1), {{.name_space = "/", .name = "n", .readers = {}, .writers = {guid(0x20)}}}};
 }
 
-Bytes golden(std::size_t gid_size) {
-  Bytes bytes{0, 1, 0, 0};
+rtps::Bytes golden(std::size_t gid_size) {
+  rtps::Bytes bytes{0, 1, 0, 0};
   const auto gid = [&](std::uint8_t first) {
     for (std::size_t i = 0; i < gid_size; ++i)
       bytes.push_back(i < 16 ? static_cast<std::uint8_t>(first + i) : 0);
   };
   gid(1);
-  const Bytes node{1, 0, 0, 0,                // one node
-                   2, 0, 0, 0, '/', 0, 0, 0,  // namespace
-                   2, 0, 0, 0, 'n', 0, 0, 0,  // name
-                   0, 0, 0, 0,                // no readers
-                   1, 0, 0, 0};               // one writer
+  const rtps::Bytes node{1, 0, 0, 0,                // one node
+                         2, 0, 0, 0, '/', 0, 0, 0,  // namespace
+                         2, 0, 0, 0, 'n', 0, 0, 0,  // name
+                         0, 0, 0, 0,                // no readers
+                         1, 0, 0, 0};               // one writer
   bytes.insert(bytes.end(), node.begin(), node.end());
   gid(0x20);
   return bytes;
@@ -50,22 +50,22 @@ TEST(DiscoveryInfo, TellsTheSizesApart) {
 TEST(DiscoveryInfo, TellsTheSizesApartWithoutNodes) {
   const DiscoveryInfo none{guid(1), {}};
   for (const GidSize size : {GidSize::kHumbleAndOlder, GidSize::kIronAndNewer}) {
-    const Bytes payload = encode_discovery_info(none, size);
+    const rtps::Bytes payload = encode_discovery_info(none, size);
     EXPECT_EQ(gid_size_of(payload), size);
     EXPECT_EQ(decode_discovery_info(payload), none);
   }
 }
 
 TEST(DiscoveryInfo, RefusesFalseCounts) {
-  Bytes nodes = golden(24);
+  rtps::Bytes nodes = golden(24);
   nodes[4 + 24] = 0xff;
   EXPECT_FALSE(decode_discovery_info(nodes));
-  Bytes writers = golden(24);
+  rtps::Bytes writers = golden(24);
   writers[writers.size() - 24 - 4 + 3] = 0x7f;  // two billion gids
   EXPECT_FALSE(decode_discovery_info(writers));
 }
 
-RC_GTEST_PROP(DiscoveryInfo, AnyBytesAreReadOrRefused, (Bytes bytes)) {
+RC_GTEST_PROP(DiscoveryInfo, AnyBytesAreReadOrRefused, (rtps::Bytes bytes)) {
   bytes.insert(bytes.begin(), {0, 1, 0, 0});
   decode_discovery_info(bytes);
 }

@@ -21,9 +21,9 @@ class Server {
     qos.transport().use_builtin_transports = false;
     qos.transport().user_transports.push_back(
         std::make_shared<fast_dds::transport::UDPv4TransportDescriptor>());
-    fast_dds::rtps::get_server_client_default_guidPrefix(1, qos.wire_protocol().prefix);
+    fast_dds::fastrtps::get_server_client_default_guidPrefix(1, qos.wire_protocol().prefix);
     auto& builtin = qos.wire_protocol().builtin;
-    builtin.discovery_config.discoveryProtocol = fast_dds::rtps::DiscoveryProtocol::SERVER;
+    builtin.discovery_config.discoveryProtocol = fast_dds::fastrtps::DiscoveryProtocol::SERVER;
     builtin.metatrafficUnicastLocatorList.push_back(fast_dds::locator("127.0.0.1", port_));
     server_ = fast_dds::dds::DomainParticipantFactory::get_instance()->create_participant(0, qos);
     if (server_ == nullptr) throw std::runtime_error("no server");
@@ -49,9 +49,8 @@ class RobotNode {
   explicit RobotNode(const TestDomain& domain)
       : context_(domain.options()),
         node_(*context_, {"/", "driver"}),
-        publisher_(
-            std::move(*RawPublisher::create(node_, "~/scan", msg::Float64::kType, qos::kDefault))) {
-  }
+        publisher_(std::move(
+            *RawPublisher::create(node_, "~/scan", msg::Float64::kType, rtps::qos::kDefault))) {}
 
  private:
   LiveContext context_;

@@ -24,7 +24,7 @@ Expected<DomainLock> DomainLock::reserve(std::uint32_t first, std::uint32_t last
   for (std::uint32_t domain = first; domain <= last; ++domain) {
     auto lock = NamedLock::take("culprit-domain-" + std::to_string(domain));
     if (!lock) return Error{lock.error()};
-    if (*lock && !is_in_use(domain, bound_udp_ports()))
+    if (*lock && !is_in_use(domain, rtps::bound_udp_ports()))
       return DomainLock(std::move(**lock), domain);
   }
   if (first == last)

@@ -47,7 +47,7 @@ std::uint8_t size_of(Primitive primitive) {
   return 0;
 }
 
-Value read_value(CdrReader& reader, Primitive primitive) {
+Value read_value(rtps::CdrReader& reader, Primitive primitive) {
   const auto integer = [](auto i) { return static_cast<std::int64_t>(i); };
   switch (primitive) {
     case Primitive::kBool:
@@ -407,9 +407,9 @@ Expected<FieldReader> FieldReader::compile_whole(MessageLibrary& library, std::s
   return reader;
 }
 
-PayloadFit FieldReader::fit(ByteView payload) const {
+PayloadFit FieldReader::fit(rtps::ByteView payload) const {
   constexpr std::size_t kPadding = 3;  // bytes at most: some writers fill up to a multiple of four
-  CdrReader reader(payload);
+  rtps::CdrReader reader(payload);
   Value none;
   Run state{plan_for(reader), none};
   const FieldStatus status = run(reader, 0, state.plan.size(), state);
@@ -425,23 +425,23 @@ bool FieldReader::reads_number() const {
          primitive != Primitive::kWString;
 }
 
-FieldStatus FieldReader::read(ByteView payload, Value& value, std::int64_t arrival) const {
-  CdrReader reader(payload);
+FieldStatus FieldReader::read(rtps::ByteView payload, Value& value, std::int64_t arrival) const {
+  rtps::CdrReader reader(payload);
   Run state{plan_for(reader), value, arrival};
   return state.plan.empty() ? FieldStatus::kMalformed : run(reader, 0, state.plan.size(), state);
 }
 
-const std::vector<FieldReader::Step>& FieldReader::plan_for(const CdrReader& reader) const {
+const std::vector<FieldReader::Step>& FieldReader::plan_for(const rtps::CdrReader& reader) const {
   return reader.is_xcdr2() ? plan2_ : plan_;
 }
 
 // Whether there is an element with the key; the reader is at its beginning then.
-bool FieldReader::search(CdrReader& reader, std::size_t at, Run& state) const {
+bool FieldReader::search(rtps::CdrReader& reader, std::size_t at, Run& state) const {
   const Step& step = state.plan[at];
   const std::size_t whole = at + 1 + step.length;
   const std::uint32_t count = reader.read_count(1);
   for (std::uint32_t i = 0; i < count && reader.ok(); ++i) {
-    CdrReader ahead = reader;
+    rtps::CdrReader ahead = reader;
     state.was_found = false;
     run(ahead, at + 1, whole, state);
     if (ahead.ok() && state.was_found) return true;
@@ -450,7 +450,7 @@ bool FieldReader::search(CdrReader& reader, std::size_t at, Run& state) const {
   return false;
 }
 
-FieldStatus FieldReader::fold(CdrReader& reader, const Step& step, Run& state) const {
+FieldStatus FieldReader::fold(rtps::CdrReader& reader, const Step& step, Run& state) const {
   const std::uint32_t count = step.count > 0 ? step.count : reader.read_count(step.size);
   std::optional<double> extreme;
   for (std::uint32_t i = 0; i < count && reader.ok(); ++i) {
@@ -469,7 +469,7 @@ FieldStatus FieldReader::fold(CdrReader& reader, const Step& step, Run& state) c
 
 // kMalformed from a nested run means that; kAbsent and kRead can only come from the outermost,
 // where kBound and kRead stand. A run that ends without either has passed over its bytes.
-FieldStatus FieldReader::run(CdrReader& reader, std::size_t begin, std::size_t end,
+FieldStatus FieldReader::run(rtps::CdrReader& reader, std::size_t begin, std::size_t end,
                              Run& state) const {
   for (std::size_t at = begin; at < end; ++at) {
     const Step& step = state.plan[at];

@@ -45,7 +45,7 @@ class FieldReader {
   static Expected<FieldReader> compile_whole(MessageLibrary& library, std::string_view type);
 
   // How the payload compares with the type. @pre compile_whole()
-  PayloadFit fit(ByteView payload) const;
+  PayloadFit fit(rtps::ByteView payload) const;
 
   // Whether read() gives numbers. @pre compile()
   bool reads_number() const;
@@ -53,7 +53,7 @@ class FieldReader {
   // Sets `value` if and only if kRead. Every integer type becomes int64 (uint64 saturates), both
   // floating-point types double. `arrival`: nanoseconds since 1970, for delay(); without it there is
   // none.
-  FieldStatus read(ByteView payload, Value& value, std::int64_t arrival = 0) const;
+  FieldStatus read(rtps::ByteView payload, Value& value, std::int64_t arrival = 0) const;
 
  private:
   enum class Op : std::uint8_t {
@@ -94,11 +94,11 @@ class FieldReader {
     std::uint32_t found = 0;  // by kFind
     bool was_found = false;   // by kFind or kMatch
   };
-  FieldStatus run(CdrReader& reader, std::size_t begin, std::size_t end, Run& state) const;
-  bool search(CdrReader& reader, std::size_t at, Run& state) const;
-  FieldStatus fold(CdrReader& reader, const Step& step, Run& state) const;
+  FieldStatus run(rtps::CdrReader& reader, std::size_t begin, std::size_t end, Run& state) const;
+  bool search(rtps::CdrReader& reader, std::size_t at, Run& state) const;
+  FieldStatus fold(rtps::CdrReader& reader, const Step& step, Run& state) const;
 
-  const std::vector<Step>& plan_for(const CdrReader& reader) const;
+  const std::vector<Step>& plan_for(const rtps::CdrReader& reader) const;
 
   std::vector<Step> plan_;
   std::vector<Step> plan2_;  // the same for XCDR2; empty: it would be too long

@@ -32,7 +32,7 @@ std::string compile_error(std::string_view type, std::string_view path) {
 }
 
 // The value, or the status in words.
-Value read(std::string_view type, std::string_view path, ByteView payload) {
+Value read(std::string_view type, std::string_view path, rtps::ByteView payload) {
   Value value = std::string("untouched");
   switch (reader_of(type, path).read(payload, value)) {
     case FieldStatus::kRead:
@@ -61,15 +61,16 @@ msg::DiagnosticArray two_statuses() {
 }
 
 TEST(FieldReader, ReadsAPlainField) {
-  EXPECT_EQ(read("std_msgs/msg/Float64", "data", encode(msg::Float64{2.5})), Value(2.5));
-  EXPECT_EQ(read("std_msgs/msg/Bool", "data", encode(msg::Bool{true})), Value(true));
-  EXPECT_EQ(read("std_msgs/msg/Float32", "data", encode(msg::Float32{0.5f})), Value(0.5));
-  EXPECT_EQ(read("std_msgs/msg/Int32", "data", encode(msg::Int32{-7})), Value(std::int64_t{-7}));
-  EXPECT_EQ(read("std_msgs/msg/String", "data", encode(msg::String{"hello"})), text("hello"));
+  EXPECT_EQ(read("std_msgs/msg/Float64", "data", rtps::encode(msg::Float64{2.5})), Value(2.5));
+  EXPECT_EQ(read("std_msgs/msg/Bool", "data", rtps::encode(msg::Bool{true})), Value(true));
+  EXPECT_EQ(read("std_msgs/msg/Float32", "data", rtps::encode(msg::Float32{0.5f})), Value(0.5));
+  EXPECT_EQ(read("std_msgs/msg/Int32", "data", rtps::encode(msg::Int32{-7})),
+            Value(std::int64_t{-7}));
+  EXPECT_EQ(read("std_msgs/msg/String", "data", rtps::encode(msg::String{"hello"})), text("hello"));
 }
 
 TEST(FieldReader, ReadsAnElementByItsName) {
-  const Bytes payload = encode(two_statuses());
+  const rtps::Bytes payload = rtps::encode(two_statuses());
   constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticArray";
   EXPECT_EQ(read(kType, "status[second].level", payload), Value(std::int64_t{2}));
   EXPECT_EQ(read(kType, "status[second].values[b].value", payload), text("2"));
@@ -79,8 +80,8 @@ TEST(FieldReader, ReadsAnElementByItsName) {
 }
 
 // A sensor_msgs/msg/JointState with these joints; effort has one element less.
-Bytes joints() {
-  CdrWriter writer;
+rtps::Bytes joints() {
+  rtps::CdrWriter writer;
   writer.write(std::int32_t{0});
   writer.write(std::uint32_t{0});
   writer.write_string("");
@@ -117,10 +118,10 @@ TEST(FieldReader, ReadsHowLongAfterItsStampAMessageCame) {
       FieldReader::compile(library, "diagnostic_msgs/msg/DiagnosticArray", "delay(header.stamp)");
   ASSERT_TRUE(reader) << reader.error();
   Value value;
-  EXPECT_EQ(reader->read(encode(array), value, 1'000'750'000'000), FieldStatus::kRead);
+  EXPECT_EQ(reader->read(rtps::encode(array), value, 1'000'750'000'000), FieldStatus::kRead);
   EXPECT_EQ(value, Value(0.25));
   array.header.stamp = {0, 0};
-  EXPECT_EQ(reader->read(encode(array), value, 1'000'750'000'000), FieldStatus::kAbsent);
+  EXPECT_EQ(reader->read(rtps::encode(array), value, 1'000'750'000'000), FieldStatus::kAbsent);
   EXPECT_NE(compile_error("diagnostic_msgs/msg/DiagnosticArray", "delay(status)"), "none");
 }
 
@@ -128,13 +129,13 @@ TEST(FieldReader, SaysWhetherAPayloadFitsItsType) {
   MessageLibrary library;
   const auto whole = FieldReader::compile_whole(library, "diagnostic_msgs/msg/DiagnosticArray");
   ASSERT_TRUE(whole) << whole.error();
-  Bytes payload = encode(two_statuses());
+  rtps::Bytes payload = rtps::encode(two_statuses());
   EXPECT_EQ(whole->fit(payload), PayloadFit::kFits);
   payload.insert(payload.end(), 8, 0);
   EXPECT_EQ(whole->fit(payload), PayloadFit::kTooLong);
   payload.resize(payload.size() - 12);
   EXPECT_EQ(whole->fit(payload), PayloadFit::kMalformed);
-  payload = encode(two_statuses());
+  payload = rtps::encode(two_statuses());
   payload[1] = 7;  // XCDR2 has no padding before 64 bits, and headers before the statuses
   EXPECT_NE(whole->fit(payload), PayloadFit::kFits);
   payload[1] = 3;  // PL_CDR of XCDR1, which no message has
@@ -160,23 +161,23 @@ TEST(FieldReader, ReadsXcdrTwoInAllItsForms) {
   const auto delay = FieldReader::compile(library, JointState::kType, "delay(header.stamp)");
   ASSERT_TRUE(whole && delay);
   for (const Xcdr2 form : {Xcdr2::kPlain, Xcdr2::kDelimited, Xcdr2::kMembers}) {
-    for (const Endianness endianness : {Endianness::kLittle, Endianness::kBig}) {
+    for (const rtps::Endianness endianness : {rtps::Endianness::kLittle, rtps::Endianness::kBig}) {
       SCOPED_TRACE(static_cast<int>(form));
-      const Bytes statuses = encode_xcdr2(two_statuses(), form, endianness);
+      const rtps::Bytes statuses = encode_xcdr2(two_statuses(), form, endianness);
       EXPECT_EQ(read(kStatuses, "status[1].level", statuses), Value(std::int64_t{2}));
       EXPECT_EQ(read(kStatuses, "status[1].values[1].value", statuses), text("2"));
       EXPECT_EQ(read(kStatuses, "status[second].values[a].value", statuses), text("second"));
       EXPECT_EQ(read(kStatuses, "status[third].level", statuses), text("absent"));
       EXPECT_EQ(whole->fit(statuses), PayloadFit::kFits);
-      EXPECT_EQ(decode<msg::DiagnosticArray>(statuses), two_statuses());
-      const Bytes cut(statuses.begin(), statuses.end() - 8);
+      EXPECT_EQ(rtps::decode<msg::DiagnosticArray>(statuses), two_statuses());
+      const rtps::Bytes cut(statuses.begin(), statuses.end() - 8);
       EXPECT_EQ(whole->fit(cut), PayloadFit::kMalformed);
 
-      Bytes state = encode_xcdr2(joints, form, endianness);
+      rtps::Bytes state = encode_xcdr2(joints, form, endianness);
       EXPECT_EQ(read(JointState::kType, "effort[elbow]", state), Value(9.0));
       EXPECT_EQ(read(JointState::kType, "min(effort)", state), Value(1.0));
       EXPECT_EQ(read(JointState::kType, "name[1]", state), text("elbow"));
-      EXPECT_EQ(decode<JointState>(state), joints);
+      EXPECT_EQ(rtps::decode<JointState>(state), joints);
       Value late;
       EXPECT_EQ(delay->read(state, late, 1'001'000'000'005), FieldStatus::kRead);
       EXPECT_EQ(late, Value(1.0));
@@ -191,8 +192,8 @@ TEST(FieldReader, ReadsXcdrTwoInAllItsForms) {
 }
 
 TEST(FieldReader, ReadsThroughNestedMessagesAndArrays) {
-  for (const Endianness endianness : {Endianness::kLittle, Endianness::kBig}) {
-    const Bytes payload = encode(two_statuses(), endianness);
+  for (const rtps::Endianness endianness : {rtps::Endianness::kLittle, rtps::Endianness::kBig}) {
+    const rtps::Bytes payload = rtps::encode(two_statuses(), endianness);
     constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticArray";
     EXPECT_EQ(read(kType, "header.frame_id", payload), text("frame"));
     EXPECT_EQ(read(kType, "status[0].name", payload), text("first"));
@@ -203,7 +204,7 @@ TEST(FieldReader, ReadsThroughNestedMessagesAndArrays) {
 }
 
 TEST(FieldReader, AnIndexBehindTheEndIsAbsent) {
-  const Bytes payload = encode(two_statuses());
+  const rtps::Bytes payload = rtps::encode(two_statuses());
   EXPECT_EQ(read("diagnostic_msgs/msg/DiagnosticArray", "status[2].name", payload), text("absent"));
   EXPECT_EQ(read("diagnostic_msgs/msg/DiagnosticArray", "status[1].values[2].key", payload),
             text("absent"));
@@ -212,10 +213,10 @@ TEST(FieldReader, AnIndexBehindTheEndIsAbsent) {
 // nav_msgs/Odometry by hand: a header, a frame, pose (7 doubles), covariance (36), twist (6),
 // covariance (36).
 TEST(FieldReader, ReadsFarIntoOdometry) {
-  CdrWriter writer;
+  rtps::CdrWriter writer;
   writer(std::int32_t{1}, std::uint32_t{2}, std::string("odom"), std::string("base"));
   for (int i = 0; i < 7 + 36 + 6 + 36; ++i) writer.write(static_cast<double>(i));
-  const Bytes payload = writer.take();
+  const rtps::Bytes payload = writer.take();
   constexpr std::string_view kType = "nav_msgs/msg/Odometry";
   EXPECT_EQ(read(kType, "child_frame_id", payload), text("base"));
   EXPECT_EQ(read(kType, "pose.pose.position.x", payload), Value(0.0));
@@ -226,11 +227,11 @@ TEST(FieldReader, ReadsFarIntoOdometry) {
 }
 
 TEST(FieldReader, ReadsBehindSequencesOfPrimitives) {
-  CdrWriter writer;  // sensor_msgs/JointState
+  rtps::CdrWriter writer;  // sensor_msgs/JointState
   writer(std::int32_t{1}, std::uint32_t{2}, std::string("f"),
          std::vector<std::string>{"left", "right"}, std::vector<double>{1, 2},
          std::vector<double>{}, std::vector<double>{5});
-  const Bytes payload = writer.take();
+  const rtps::Bytes payload = writer.take();
   EXPECT_EQ(read("sensor_msgs/msg/JointState", "name[1]", payload), text("right"));
   EXPECT_EQ(read("sensor_msgs/msg/JointState", "position[1]", payload), Value(2.0));
   EXPECT_EQ(read("sensor_msgs/msg/JointState", "velocity[0]", payload), text("absent"));
@@ -238,16 +239,16 @@ TEST(FieldReader, ReadsBehindSequencesOfPrimitives) {
 }
 
 TEST(FieldReader, Uint64Saturates) {
-  CdrWriter writer;
+  rtps::CdrWriter writer;
   writer.write(std::numeric_limits<std::uint64_t>::max());
   EXPECT_EQ(read("std_msgs/msg/UInt64", "data", writer.take()),
             Value(std::numeric_limits<std::int64_t>::max()));
 }
 
 TEST(FieldReader, FalseCountsAreMalformed) {
-  const Bytes payload{0,    1,    0,    0,                                        //
-                      0,    0,    0,    0,   0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0,  // header
-                      0xff, 0xff, 0xff, 0xff};  // four billion statuses
+  const rtps::Bytes payload{0,    1,    0,    0,                                        //
+                            0,    0,    0,    0,   0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0,  // header
+                            0xff, 0xff, 0xff, 0xff};  // four billion statuses
   EXPECT_EQ(read("diagnostic_msgs/msg/DiagnosticArray", "status[5].name", payload),
             text("malformed"));
   EXPECT_EQ(read("diagnostic_msgs/msg/DiagnosticArray", "status[4000000000].name", payload),
@@ -286,7 +287,7 @@ TEST(FieldReader, EmptyMessagesTakeAByte) {
 
   ASSERT_TRUE(reader);
   Value value;
-  EXPECT_EQ(reader->read(Bytes{0, 1, 0, 0, 0, 9}, value), FieldStatus::kRead);
+  EXPECT_EQ(reader->read(rtps::Bytes{0, 1, 0, 0, 0, 9}, value), FieldStatus::kRead);
   EXPECT_EQ(value, Value(std::int64_t{9}));
   EXPECT_EQ(loop.error(), "the message type nests too deep, or is defined by itself");
   EXPECT_FALSE(wide);
@@ -306,7 +307,8 @@ RC_GTEST_PROP(FieldReader, AgreesWithTheFullDecoder, ()) {
       pair.value = *rc::gen::string<std::string>();
     }
   }
-  const Bytes payload = encode(array, *rc::gen::element(Endianness::kLittle, Endianness::kBig));
+  const rtps::Bytes payload =
+      rtps::encode(array, *rc::gen::element(rtps::Endianness::kLittle, rtps::Endianness::kBig));
   constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticArray";
   for (std::size_t i = 0; i < 4; ++i) {
     const std::string at = "status[" + std::to_string(i) + "]";
@@ -321,7 +323,7 @@ RC_GTEST_PROP(FieldReader, AgreesWithTheFullDecoder, ()) {
   }
 }
 
-RC_GTEST_PROP(FieldReader, AnyBytesAreReadOrRefused, (Bytes bytes)) {
+RC_GTEST_PROP(FieldReader, AnyBytesAreReadOrRefused, (rtps::Bytes bytes)) {
   static const FieldReader reader =
       reader_of("diagnostic_msgs/msg/DiagnosticArray", "status[2].values[1].value");
   bytes.insert(bytes.begin(), {0, 1, 0, 0});

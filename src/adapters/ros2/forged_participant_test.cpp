@@ -23,7 +23,7 @@ class Victim {
   Victim() {
     const Bound socket = bound();
     port_ = socket.port;
-    pid_ = fork_or_abort();
+    pid_ = rtps::fork_or_abort();
     while (pid_ == 0) pause();
     close(socket.descriptor);
   }
@@ -41,7 +41,7 @@ class Victim {
 
 // ROS 2 has no partitions, nor have our nodes; the middleware's profiles have.
 TEST(Discovery, TellsThePartitionsOfAnEndpoint) {
-  fast_dds::rtps::WriterProxyData writer(4, 1);
+  fast_dds::fastrtps::WriterProxyData writer(4, 1);
   writer.m_qos.m_partition.push_back("left");
   writer.m_qos.m_partition.push_back("right*");
   EXPECT_THAT(fast_dds::to_info(writer).partitions, testing::ElementsAre("left", "right*"));
@@ -59,7 +59,7 @@ TEST(ForgedParticipant, DoesNotChooseWhichProcessANodeIs) {
   watcher.run([&] {
     const ParticipantInfo* info = watcher->graph().participant(forger.prefix());
     ASSERT_NE(info, nullptr);
-    EXPECT_THAT(info->metatraffic, Contains(UdpAddress{{127, 0, 0, 1}, victim.port()}))
+    EXPECT_THAT(info->metatraffic, Contains(rtps::UdpAddress{{127, 0, 0, 1}, victim.port()}))
         << "it announces that port";
     ASSERT_EQ(watcher->graph().nodes().size(), 1u);
     EXPECT_EQ(watcher->graph().nodes()[0].node.pid, 0) << "the victim is " << victim.pid();

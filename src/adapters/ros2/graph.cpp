@@ -28,19 +28,19 @@ void Graph::apply(const DiscoveryEvent& event) {
   struct Visitor {
     Graph& graph;
     void operator()(const ParticipantInfo& info) const { graph.add(info); }
-    void operator()(const EndpointInfo& info) const { graph.add(info); }
+    void operator()(const rtps::EndpointInfo& info) const { graph.add(info); }
     void operator()(const ParticipantGone& gone) const {
       graph.is_losing_ = gone.was_lost;
       graph.remove_participant(gone.guid.prefix());
       graph.is_losing_ = false;
     }
-    void operator()(const EndpointGone& gone) const { graph.remove_endpoint(gone.guid); }
+    void operator()(const rtps::EndpointGone& gone) const { graph.remove_endpoint(gone.guid); }
   };
   std::visit(Visitor{*this}, event);
 }
 
 void Graph::apply(const DiscoveryInfo& info, std::optional<GidSize> form) {
-  const GuidPrefix prefix = info.participant.prefix();
+  const rtps::GuidPrefix prefix = info.participant.prefix();
   const auto found = peers_.find(prefix);
   if (found == peers_.end()) return;  // it has left, or there was no room for it
   Peer& peer = found->second;
@@ -56,7 +56,7 @@ void Graph::apply(const DiscoveryInfo& info, std::optional<GidSize> form) {
 }
 
 // A single message ends nothing that somebody acts on.
-void Graph::keep_doubted(const GuidPrefix& prefix, Peer& peer, const Claims& before,
+void Graph::keep_doubted(const rtps::GuidPrefix& prefix, Peer& peer, const Claims& before,
                          Claims& after) {
   if (!options_.is_asked_about) return;
   std::erase_if(peer.doubted, [&](const std::string& name) { return after.contains(name); });
@@ -73,7 +73,7 @@ void Graph::keep_doubted(const GuidPrefix& prefix, Peer& peer, const Claims& bef
 void Graph::believe_left(const std::string& name) {
   const auto node = nodes_.find(name);
   if (node == nodes_.end() || !node->second.told) return;
-  const GuidPrefix prefix = *node->second.told;
+  const rtps::GuidPrefix prefix = *node->second.told;
   Peer& peer = peers_.at(prefix);
   if (peer.doubted.erase(name) == 0) return;  // it came back, or it is another one
   looked_for_ = nullptr;
@@ -91,14 +91,15 @@ bool Graph::is_said_to_leave(const std::string& name) const {
          peers_.at(*node->second.told).doubted.contains(name);
 }
 
-void Graph::replace_claims(const GuidPrefix& prefix, Peer& peer, const Claims& before,
+void Graph::replace_claims(const rtps::GuidPrefix& prefix, Peer& peer, const Claims& before,
                            Claims after) {
-  const auto is_claimed = [](const Claims& claims, const std::string& name, const Guid& guid) {
+  const auto is_claimed = [](const Claims& claims, const std::string& name,
+                             const rtps::Guid& guid) {
     const auto node = claims.find(name);
     return node != claims.end() && node->second.contains(guid);
   };
   for (const auto& [name, guids] : before) {
-    for (const Guid& guid : guids) {
+    for (const rtps::Guid& guid : guids) {
       const auto owner = owners_.find(guid);
       if (is_claimed(after, name, guid) || owner == owners_.end() || owner->second != name)
         continue;
@@ -110,7 +111,7 @@ void Graph::replace_claims(const GuidPrefix& prefix, Peer& peer, const Claims& b
   peer.claims = std::move(after);
   for (const auto& [name, guids] : peer.claims) {
     if (!before.contains(name)) claim(prefix, name);
-    for (const Guid& guid : guids) {
+    for (const rtps::Guid& guid : guids) {
       if (!is_claimed(before, name, guid) && owners_.emplace(guid, name).second) show(guid);
     }
   }
@@ -141,9 +142,9 @@ Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
       break;
     }
     const std::size_t most = (is_component(*name) ? 2 : 1) * options_.limits.endpoints;
-    std::set<Guid>& endpoints = claims[*name];
+    std::set<rtps::Guid>& endpoints = claims[*name];
     for (const auto* guids : {&node.readers, &node.writers}) {
-      for (const Guid& guid : *guids) {
+      for (const rtps::Guid& guid : *guids) {
         if (guid.prefix() != info.participant.prefix())
           continue;  // a participant announces only itself
         if (!endpoints.contains(guid) && claim_count_ >= most) {
@@ -158,7 +159,7 @@ Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
 }
 
 void Graph::add(const ParticipantInfo& info) {
-  const GuidPrefix prefix = info.guid.prefix();
+  const rtps::GuidPrefix prefix = info.guid.prefix();
   if (const auto known = peers_.find(prefix); known != peers_.end()) {
     known->second.info = info;
     return;
@@ -177,7 +178,7 @@ void Graph::add(const ParticipantInfo& info) {
   ++sources_[source].participants;
 }
 
-void Graph::add(const EndpointInfo& info) {
+void Graph::add(const rtps::EndpointInfo& info) {
   const auto peer = peers_.find(info.guid.prefix());
   if (peer == peers_.end()) return;
   if (const Endpoint* known = find(info.guid); known != nullptr) {
@@ -196,7 +197,7 @@ void Graph::add(const EndpointInfo& info) {
   show(info.guid);
 }
 
-void Graph::remove_participant(const GuidPrefix& prefix) {
+void Graph::remove_participant(const rtps::GuidPrefix& prefix) {
   looked_for_ = nullptr;
   const auto found = peers_.find(prefix);
   if (found == peers_.end()) return;
@@ -214,19 +215,19 @@ void Graph::remove_participant(const GuidPrefix& prefix) {
 }
 
 void Graph::forget_process(int pid) {
-  std::vector<GuidPrefix> gone;
+  std::vector<rtps::GuidPrefix> gone;
   for (const auto& [prefix, peer] : peers_) {
     if (peer.pid_is_known && peer.pid == pid && pid != 0) gone.push_back(prefix);
   }
-  for (const GuidPrefix& prefix : gone) remove_participant(prefix);
+  for (const rtps::GuidPrefix& prefix : gone) remove_participant(prefix);
 }
 
 void Graph::forget_ended_namesakes() {
   std::set<int> processes;
-  std::set<GuidPrefix> unproven;
+  std::set<rtps::GuidPrefix> unproven;
   for (const auto& [name, node] : nodes_) {
     if (node.claimants.size() < 2) continue;
-    for (const GuidPrefix& claimant : node.claimants) {
+    for (const rtps::GuidPrefix& claimant : node.claimants) {
       const Peer& peer = peers_.at(claimant);
       if (!has_ended(peer)) continue;
       if (peer.pid != 0) {
@@ -237,10 +238,10 @@ void Graph::forget_ended_namesakes() {
     }
   }
   for (const int pid : processes) forget_process(pid);
-  for (const GuidPrefix& prefix : unproven) remove_participant(prefix);
+  for (const rtps::GuidPrefix& prefix : unproven) remove_participant(prefix);
 }
 
-void Graph::remove_endpoint(const Guid& guid) {
+void Graph::remove_endpoint(const rtps::Guid& guid) {
   if (find(guid) == nullptr) return;
   hide(guid);
   Peer& peer = peers_.at(guid.prefix());
@@ -249,7 +250,7 @@ void Graph::remove_endpoint(const Guid& guid) {
   --sources_[peer.source].endpoints;
 }
 
-void Graph::claim(const GuidPrefix& prefix, const std::string& name) {
+void Graph::claim(const rtps::GuidPrefix& prefix, const std::string& name) {
   Node& node = nodes_[name];
   Peer& peer = peers_.at(prefix);
   node.claimants.push_back(prefix);
@@ -268,7 +269,7 @@ void Graph::claim(const GuidPrefix& prefix, const std::string& name) {
   count_namesakes(name, node);
 }
 
-void Graph::disclaim(const GuidPrefix& prefix, const std::string& name) {
+void Graph::disclaim(const rtps::GuidPrefix& prefix, const std::string& name) {
   Node& node = nodes_.at(name);
   std::erase(node.claimants, prefix);
   if (node.told == prefix) tell_left(name, node);
@@ -291,7 +292,7 @@ void Graph::note_proven_here(const std::string& name) {
 void Graph::look_at_unproven() {
   constexpr int kMost = 8;  // each may take a millisecond or more
   int looked_at = 0;
-  std::vector<std::pair<std::string, GuidPrefix>> proven;
+  std::vector<std::pair<std::string, rtps::GuidPrefix>> proven;
   for (const std::string& name : proven_here_) {
     const auto node = nodes_.find(name);
     if (node == nodes_.end()) continue;
@@ -310,7 +311,7 @@ void Graph::look_at_unproven() {
   }
 }
 
-void Graph::show(const Guid& guid) {
+void Graph::show(const rtps::Guid& guid) {
   Node* node = holder_of(guid);
   const Endpoint* endpoint = find(guid);
   if (node == nullptr || endpoint == nullptr || !endpoint->ros) return;
@@ -322,7 +323,7 @@ void Graph::show(const Guid& guid) {
   tell(EndpointJoined{name, ros});
 }
 
-void Graph::hide(const Guid& guid) {
+void Graph::hide(const rtps::Guid& guid) {
   Node* node = holder_of(guid);
   const Endpoint* endpoint = find(guid);
   if (node == nullptr || endpoint == nullptr || !endpoint->ros) return;
@@ -345,7 +346,7 @@ void Graph::tell_hidden(const std::string& node, const EdgeKey& edge) {
 
 // The node that claims the endpoint, if that participant's node of this name is the one that
 // counts.
-Graph::Node* Graph::holder_of(const Guid& guid) {
+Graph::Node* Graph::holder_of(const rtps::Guid& guid) {
   const auto owner = owners_.find(guid);
   if (owner == owners_.end()) return nullptr;
   const auto node = nodes_.find(owner->second);
@@ -353,9 +354,9 @@ Graph::Node* Graph::holder_of(const Guid& guid) {
 }
 
 void Graph::tell_joined(const std::string& name, Node& node) {
-  const auto last =
-      std::find_if(node.claimants.rbegin(), node.claimants.rend(),
-                   [&](const GuidPrefix& claimant) { return may_hold(name, peers_.at(claimant)); });
+  const auto last = std::find_if(
+      node.claimants.rbegin(), node.claimants.rend(),
+      [&](const rtps::GuidPrefix& claimant) { return may_hold(name, peers_.at(claimant)); });
   if (last == node.claimants.rend()) return;
   node.told = *last;
   Peer& peer = peers_.at(*node.told);
@@ -367,7 +368,7 @@ void Graph::tell_joined(const std::string& name, Node& node) {
   // Those that were known before: an older node of the name comes to count again.
   const auto claimed = peer.claims.find(name);
   if (claimed == peer.claims.end()) return;
-  for (const Guid& guid : claimed->second) {
+  for (const rtps::Guid& guid : claimed->second) {
     if (const auto owner = owners_.find(guid); owner != owners_.end() && owner->second == name)
       show(guid);
   }
@@ -380,7 +381,7 @@ void Graph::tell_left(const std::string& name, Node& node) {
   tell(NodeLeft{name, is_losing_});
 }
 
-const Graph::Endpoint* Graph::find(const Guid& guid) const {
+const Graph::Endpoint* Graph::find(const rtps::Guid& guid) const {
   const auto peer = peers_.find(guid.prefix());
   if (peer == peers_.end()) return nullptr;
   const auto endpoint = peer->second.endpoints.find(guid);
@@ -448,7 +449,7 @@ void Graph::warn_of_duplicate(const std::string& name, const Node& node) {
 // Told only when it changes. A predecessor whose lease still runs is none.
 void Graph::count_namesakes(const std::string& name, Node& node) {
   std::vector<GraphNode> all;
-  for (const GuidPrefix& claimant : node.claimants) {
+  for (const rtps::GuidPrefix& claimant : node.claimants) {
     Peer& peer = peers_.at(claimant);
     if (claimant != node.told) pid_of(peer);
     if (!may_hold(name, peer)) continue;
@@ -497,12 +498,12 @@ void Graph::warn_of_limit(const char* what) {
   }
 }
 
-const ParticipantInfo* Graph::participant(const GuidPrefix& prefix) const {
+const ParticipantInfo* Graph::participant(const rtps::GuidPrefix& prefix) const {
   const auto found = peers_.find(prefix);
   return found == peers_.end() ? nullptr : &found->second.info;
 }
 
-Graph::Owner Graph::owner_of(const Guid& endpoint) const {
+Graph::Owner Graph::owner_of(const rtps::Guid& endpoint) const {
   Owner owner;
   const auto peer = peers_.find(endpoint.prefix());
   if (peer != peers_.end()) owner.pid = peer->second.pid;
@@ -514,7 +515,7 @@ Graph::Owner Graph::owner_of(const Guid& endpoint) const {
   return owner;
 }
 
-int Graph::process_of(const GuidPrefix& prefix) const {
+int Graph::process_of(const rtps::GuidPrefix& prefix) const {
   const auto peer = peers_.find(prefix);
   return peer == peers_.end() ? 0 : peer->second.pid;
 }
@@ -536,8 +537,9 @@ const Graph::Publishers& Graph::nodes_publishing(const std::string& topic) const
   return found == published_.end() ? kNone : found->second;
 }
 
-std::vector<std::pair<Guid, std::string>> Graph::publishers_of(const std::string& topic) const {
-  std::vector<std::pair<Guid, std::string>> publishers;
+std::vector<std::pair<rtps::Guid, std::string>> Graph::publishers_of(
+    const std::string& topic) const {
+  std::vector<std::pair<rtps::Guid, std::string>> publishers;
   for (const auto& [guid, node] : owners_) {
     const Endpoint* found = find(guid);
     const bool is_it = found != nullptr && found->ros && found->ros->name == topic &&
@@ -547,7 +549,7 @@ std::vector<std::pair<Guid, std::string>> Graph::publishers_of(const std::string
   return publishers;
 }
 
-const EndpointInfo* Graph::endpoint(const Guid& guid) const {
+const rtps::EndpointInfo* Graph::endpoint(const rtps::Guid& guid) const {
   const Endpoint* found = find(guid);
   return found == nullptr ? nullptr : &found->info;
 }
@@ -579,7 +581,7 @@ std::vector<Graph::ParticipantView> Graph::participants() const {
     for (const auto& [name, guids] : peer.claims) {
       view.nodes.push_back(name);
       view.undiscovered += static_cast<std::size_t>(std::ranges::count_if(
-          guids, [&](const Guid& guid) { return !peer.endpoints.contains(guid); }));
+          guids, [&](const rtps::Guid& guid) { return !peer.endpoints.contains(guid); }));
     }
     view.endpoints.reserve(peer.endpoints.size());
     for (const auto& [guid, endpoint] : peer.endpoints) {

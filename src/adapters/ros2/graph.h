@@ -46,9 +46,9 @@ namespace culprit::ros2 {
 struct GraphNode {
   std::string name;  // full: "/namespace/name"
   Vendor vendor = Vendor::kOther;
-  std::string host;          // empty if the participant announces none
-  int pid = 0;               // on this machine; 0 where it is not known
-  GuidPrefix participant{};  // that holds it
+  std::string host;                // empty if the participant announces none
+  int pid = 0;                     // on this machine; 0 where it is not known
+  rtps::GuidPrefix participant{};  // that holds it
 };
 
 // The process of a participant, as far as it is proven.
@@ -155,8 +155,8 @@ class Graph {
   void look_at_unproven();
 
   // Null when they are not known (any more).
-  const ParticipantInfo* participant(const GuidPrefix& prefix) const;
-  const EndpointInfo* endpoint(const Guid& guid) const;
+  const ParticipantInfo* participant(const rtps::GuidPrefix& prefix) const;
+  const rtps::EndpointInfo* endpoint(const rtps::Guid& guid) const;
   // The node of this name that counts.
   std::optional<GraphNode> node(const std::string& name) const;
   // The nodes that count and publish a topic, each with its endpoint. Until the graph changes.
@@ -165,23 +165,23 @@ class Graph {
   // The same of each topic that has one.
   const std::map<std::string, Publishers>& published() const { return published_; }
   // The endpoints that publish the topic, each with its node, whether that counts or not.
-  std::vector<std::pair<Guid, std::string>> publishers_of(const std::string& topic) const;
+  std::vector<std::pair<rtps::Guid, std::string>> publishers_of(const std::string& topic) const;
   // The owner of an endpoint: no node, while none claims it.
   struct Owner {
     std::string node;
     int pid = 0;          // on this machine, as far as it is proven
     bool counts = false;  // of those that claim the node's name it is the one that counts
   };
-  Owner owner_of(const Guid& endpoint) const;
+  Owner owner_of(const rtps::Guid& endpoint) const;
   // Its process on this machine; 0: it is elsewhere, or not proven, or not known.
-  int process_of(const GuidPrefix& prefix) const;
+  int process_of(const rtps::GuidPrefix& prefix) const;
   int process_of(const std::string& node) const;
 
   // Every node, by name, with its endpoints.
   struct NodeView {
     GraphNode node;
     std::vector<GraphEndpoint> endpoints;
-    GuidPrefix participant{};  // that holds it
+    rtps::GuidPrefix participant{};  // that holds it
   };
   std::vector<NodeView> nodes() const;
   // The same without their endpoints: participants() has those, too.
@@ -190,7 +190,7 @@ class Graph {
   // Every participant, with all that it has: also nodes that do not count, since another has their
   // name, and each of several endpoints of one node, kind and name.
   struct OwnedEndpoint {
-    Guid id;
+    rtps::Guid id;
     std::string node;  // empty: no node claims it
     GraphEndpoint endpoint;
   };
@@ -206,11 +206,11 @@ class Graph {
 
  private:
   struct Endpoint {
-    EndpointInfo info;
+    rtps::EndpointInfo info;
     std::optional<GraphEndpoint>
         ros;  // what it means; nothing where it is no ROS 2 endpoint, or its other half
   };
-  using Claims = std::map<std::string, std::set<Guid>>;  // node -> its endpoints
+  using Claims = std::map<std::string, std::set<rtps::Guid>>;  // node -> its endpoints
   struct Peer {
     ParticipantInfo info;
     int pid = 0;
@@ -226,7 +226,7 @@ class Graph {
     bool told_of_duplicate = false;
     std::optional<GidSize> form;
     Claims claims;
-    std::unordered_map<Guid, Endpoint> endpoints;
+    std::unordered_map<rtps::Guid, Endpoint> endpoints;
   };
   using Source = GraphSources::Entries;
   using EdgeKey = std::pair<EndpointKind, std::string>;
@@ -235,32 +235,35 @@ class Graph {
     int count = 0;  // of the endpoints that make it
   };
   struct Node {
-    std::vector<GuidPrefix> claimants;  // that announce this node; the last one that may counts
-    std::optional<GuidPrefix> told;     // whose node the listener knows
-    std::map<EdgeKey, Edge> edges;      // that the listener knows
-    int namesakes = 0;                  // that the listener knows
-    bool is_counted = false;            // Source::components, of `told`
+    // Those that announce this node; the last one that may counts.
+    std::vector<rtps::GuidPrefix> claimants;
+    std::optional<rtps::GuidPrefix> told;  // whose node the listener knows
+    std::map<EdgeKey, Edge> edges;         // that the listener knows
+    int namesakes = 0;                     // that the listener knows
+    bool is_counted = false;               // Source::components, of `told`
   };
 
   void add(const ParticipantInfo& info);
-  void add(const EndpointInfo& info);
-  void remove_participant(const GuidPrefix& prefix);
-  void remove_endpoint(const Guid& guid);
+  void add(const rtps::EndpointInfo& info);
+  void remove_participant(const rtps::GuidPrefix& prefix);
+  void remove_endpoint(const rtps::Guid& guid);
 
   Claims read_claims(const DiscoveryInfo& info, Peer& peer);
-  void keep_doubted(const GuidPrefix& prefix, Peer& peer, const Claims& before, Claims& after);
-  void replace_claims(const GuidPrefix& prefix, Peer& peer, const Claims& before, Claims after);
-  void claim(const GuidPrefix& prefix, const std::string& name);
-  void disclaim(const GuidPrefix& prefix, const std::string& name);
+  void keep_doubted(const rtps::GuidPrefix& prefix, Peer& peer, const Claims& before,
+                    Claims& after);
+  void replace_claims(const rtps::GuidPrefix& prefix, Peer& peer, const Claims& before,
+                      Claims after);
+  void claim(const rtps::GuidPrefix& prefix, const std::string& name);
+  void disclaim(const rtps::GuidPrefix& prefix, const std::string& name);
   // The edge that an endpoint makes, if it is discovered, and claimed by a node that counts.
-  void show(const Guid& guid);
-  void hide(const Guid& guid);
+  void show(const rtps::Guid& guid);
+  void hide(const rtps::Guid& guid);
   void tell_hidden(const std::string& node, const EdgeKey& edge);
-  Node* holder_of(const Guid& guid);
+  Node* holder_of(const rtps::Guid& guid);
   void tell_joined(const std::string& name, Node& node);
   void tell_left(const std::string& name, Node& node);
 
-  const Endpoint* find(const Guid& guid) const;
+  const Endpoint* find(const rtps::Guid& guid) const;
   int pid_of(Peer& peer);
   bool has_ended(const Peer& peer) const;
   void look_for_process(Peer& peer);
@@ -279,12 +282,12 @@ class Graph {
   void tell(const GraphChange& change) const;
 
   Options options_;
-  std::unordered_map<GuidPrefix, Peer> peers_;
+  std::unordered_map<rtps::GuidPrefix, Peer> peers_;
   GraphSources sources_;
-  std::uint64_t last_number_ = 0;                 // of a participant
-  std::size_t endpoint_count_ = 0;                // discovered, of all peers
-  std::size_t claim_count_ = 0;                   // claimed, of all peers
-  std::unordered_map<Guid, std::string> owners_;  // endpoint -> the node that claims it
+  std::uint64_t last_number_ = 0;                       // of a participant
+  std::size_t endpoint_count_ = 0;                      // discovered, of all peers
+  std::size_t claim_count_ = 0;                         // claimed, of all peers
+  std::unordered_map<rtps::Guid, std::string> owners_;  // endpoint -> the node that claims it
   std::map<std::string, Node> nodes_;
   std::map<std::string, Publishers> published_;  // by topic; of the nodes' edges
   std::set<std::string> proven_here_;  // names that are kept here, and were proven to be held here

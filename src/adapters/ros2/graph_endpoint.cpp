@@ -7,7 +7,7 @@
 
 namespace culprit::ros2 {
 
-std::optional<GraphEndpoint> ros_meaning(const EndpointInfo& info) {
+std::optional<GraphEndpoint> ros_meaning(const rtps::EndpointInfo& info) {
   auto channel = demangle_topic(info.topic);
   if (!channel || channel->channel == Channel::kReply) return std::nullopt;
   auto type = demangle_type(channel->channel, info.type);

@@ -14,7 +14,7 @@ struct GraphEndpoint {
   EndpointKind kind = EndpointKind::kPublisher;
   std::string name;  // of the topic or service, absolute
   std::string type;  // "package/msg/Type" or "package/srv/Type"
-  Qos qos;           // as announced, without depth
+  rtps::Qos qos;     // as announced, without depth
   // As announced (type_description.h); empty before Iron. Of a service: of its request.
   std::string type_hash{};
   std::string service_hash{};  // likewise of the whole service; empty before Lyrical
@@ -26,6 +26,6 @@ struct GraphEndpoint {
 
 // A node's reader of a topic is a subscriber, its reader of requests a server, and so on. Nothing: it is no endpoint of
 // ROS 2, or the other half of a service (replies), which adds nothing.
-std::optional<GraphEndpoint> ros_meaning(const EndpointInfo& info);
+std::optional<GraphEndpoint> ros_meaning(const rtps::EndpointInfo& info);
 
 }  // namespace culprit::ros2

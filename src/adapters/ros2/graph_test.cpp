@@ -18,32 +18,33 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 // Endpoint ids: the last byte marks a reader (4) or a writer (3).
-Guid guid_of(std::uint8_t participant, std::uint8_t entity, bool is_reader) {
-  Guid guid;
+rtps::Guid guid_of(std::uint8_t participant, std::uint8_t entity, bool is_reader) {
+  rtps::Guid guid;
   guid.bytes[0] = participant;
   guid.bytes[12] = entity;
   guid.bytes[15] = is_reader ? 4 : 3;
   return guid;
 }
-Guid reader(std::uint8_t participant, std::uint8_t entity) {
+rtps::Guid reader(std::uint8_t participant, std::uint8_t entity) {
   return guid_of(participant, entity, true);
 }
-Guid writer(std::uint8_t participant, std::uint8_t entity) {
+rtps::Guid writer(std::uint8_t participant, std::uint8_t entity) {
   return guid_of(participant, entity, false);
 }
 
-EndpointInfo endpoint(const Guid& guid, std::string topic, std::string type) {
+rtps::EndpointInfo endpoint(const rtps::Guid& guid, std::string topic, std::string type) {
   return {
       .guid = guid, .topic = std::move(topic), .type = std::move(type), .user_data = {}, .qos = {}};
 }
 
-EndpointInfo publishes(const Guid& guid, const std::string& topic) {
+rtps::EndpointInfo publishes(const rtps::Guid& guid, const std::string& topic) {
   return endpoint(guid, "rt" + topic, "std_msgs::msg::dds_::String_");
 }
 
-NodeEntities node(std::string name_space, std::string name, std::vector<Guid> endpoints = {}) {
+NodeEntities node(std::string name_space, std::string name,
+                  std::vector<rtps::Guid> endpoints = {}) {
   NodeEntities entities{std::move(name_space), std::move(name), {}, {}};
-  for (const Guid& guid : endpoints)
+  for (const rtps::Guid& guid : endpoints)
     (guid.is_reader() ? entities.readers : entities.writers).push_back(guid);
   return entities;
 }
@@ -78,12 +79,12 @@ class Watched {
     graph_.forget_ended_namesakes();
     return *this;
   }
-  Watched& has(const EndpointInfo& info) {
+  Watched& has(const rtps::EndpointInfo& info) {
     graph_.apply(info);
     return *this;
   }
-  Watched& loses(const Guid& guid) {
-    graph_.apply(EndpointGone{guid});
+  Watched& loses(const rtps::Guid& guid) {
+    graph_.apply(rtps::EndpointGone{guid});
     return *this;
   }
   Watched& says(std::uint8_t participant, std::vector<NodeEntities> nodes) {
@@ -535,13 +536,13 @@ TEST(Graph, AStrangersParticipantsLeaveRoomForTheRobots) {
 TEST(Graph, AStrangersNodesAndEndpointsLeaveRoomForTheRobots) {
   Watched watched(with_strangers({.participants = 40, .nodes = 8, .endpoints = 8}));
   std::vector<NodeEntities> many;
-  std::vector<Guid> endpoints;
+  std::vector<rtps::Guid> endpoints;
   for (std::uint8_t i = 1; i <= 20; ++i) {
     endpoints.push_back(writer(100, i));
     many.push_back(node("/", "n" + std::to_string(i), {endpoints.back()}));
   }
   watched.joins(100).says(100, many);
-  for (const Guid& guid : endpoints) watched.has(publishes(guid, "/t"));
+  for (const rtps::Guid& guid : endpoints) watched.has(publishes(guid, "/t"));
   EXPECT_EQ(watched.graph().nodes().size(), 2u);
   watched.told();
   watched.joins(1)
@@ -692,13 +693,13 @@ RC_GTEST_PROP(Graph, WhatItTellsAddsUpToWhatItShows, ()) {
         graph.apply(publishes(any_endpoint(p), *rc::gen::element<std::string>("/t", "/u", "bad")));
         break;
       case 3:
-        graph.apply(EndpointGone{any_endpoint(p)});
+        graph.apply(rtps::EndpointGone{any_endpoint(p)});
         break;
       default: {
         DiscoveryInfo info{guid_of(p, 0, false), {}};
         const int count = *rc::gen::inRange(0, 4);
         for (int n = 0; n < count; ++n) {
-          std::vector<Guid> endpoints;
+          std::vector<rtps::Guid> endpoints;
           const int claimed = *rc::gen::inRange(0, 4);
           for (int e = 0; e < claimed; ++e) endpoints.push_back(any_endpoint(p));
           info.nodes.push_back(

@@ -9,11 +9,11 @@
 namespace culprit::ros2 {
 namespace {
 
-constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
+constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 1};
 
-Bytes payload_of(std::uint64_t secret) {
-  Bytes bytes{0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-  std::memcpy(bytes.data() + kEncapsulationSize, &secret, sizeof secret);
+rtps::Bytes payload_of(std::uint64_t secret) {
+  rtps::Bytes bytes{0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  std::memcpy(bytes.data() + rtps::kEncapsulationSize, &secret, sizeof secret);
   return bytes;
 }
 

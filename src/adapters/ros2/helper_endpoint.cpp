@@ -9,20 +9,18 @@
 namespace culprit::ros2 {
 namespace {
 
-namespace link = culprit_link;
-
 // The reader of a helper that takes samples in turn.
 constexpr std::uint32_t kLeastDepth = 16;
 
 std::int64_t to_nanoseconds(Duration duration) {
-  return duration == kInfinite ? 0 : std::int64_t{duration.count()};
+  return duration == rtps::kInfinite ? 0 : std::int64_t{duration.count()};
 }
 
-link::Quality to_quality(const Qos& qos) {
-  link::Quality quality;
-  quality.is_reliable = qos.reliability == Reliability::kReliable;
-  quality.is_transient_local = qos.durability == Durability::kTransientLocal;
-  quality.keeps_all = qos.history == History::kKeepAll;
+culprit_link::Quality to_quality(const rtps::Qos& qos) {
+  culprit_link::Quality quality;
+  quality.is_reliable = qos.reliability == rtps::Reliability::kReliable;
+  quality.is_transient_local = qos.durability == rtps::Durability::kTransientLocal;
+  quality.keeps_all = qos.history == rtps::History::kKeepAll;
   quality.depth = std::max(qos.depth, kLeastDepth);
   quality.lifespan = to_nanoseconds(qos.lifespan);
   return quality;
@@ -44,26 +42,28 @@ std::optional<HelperEndpoint::Meaning> HelperEndpoint::meaning_of(const std::str
   return Meaning{purpose, channel->name, *name};
 }
 
-std::optional<link::Frame> HelperEndpoint::asks_for(const Qos& qos) const {
+std::optional<culprit_link::Frame> HelperEndpoint::asks_for(const rtps::Qos& qos) const {
   const std::string& name = meaning.name;
   const std::string& type = meaning.type;
-  const link::Quality quality = to_quality(qos);
+  const culprit_link::Quality quality = to_quality(qos);
   if (meaning.purpose == Purpose::kTopic && reads()) {
-    const std::uint32_t most =
-        is_whole(use) ? link::kWhole : static_cast<std::uint32_t>(given_of(use, kBeginningSize));
-    return link::Subscribe{id, name, type, quality, most};
+    const std::uint32_t most = is_whole(use)
+                                   ? culprit_link::kWhole
+                                   : static_cast<std::uint32_t>(given_of(use, kBeginningSize));
+    return culprit_link::Subscribe{id, name, type, quality, most};
   }
-  if (meaning.purpose == Purpose::kTopic) return link::Advertise{id, name, type, quality};
+  if (meaning.purpose == Purpose::kTopic) return culprit_link::Advertise{id, name, type, quality};
   // The other half of each, the reply, belongs to the request's.
-  if (meaning.purpose == Purpose::kRequest && reads()) return link::Offer{id, name, type, quality};
-  if (meaning.purpose == Purpose::kRequest) return link::Use{id, name, type, quality};
+  if (meaning.purpose == Purpose::kRequest && reads())
+    return culprit_link::Offer{id, name, type, quality};
+  if (meaning.purpose == Purpose::kRequest) return culprit_link::Use{id, name, type, quality};
   return std::nullopt;
 }
 
-void HelperEndpoint::deliver(ByteView payload, const SampleIdentity& identity,
-                             const SampleIdentity& related) {
+void HelperEndpoint::deliver(rtps::ByteView payload, const rtps::SampleIdentity& identity,
+                             const rtps::SampleIdentity& related) {
   gate.pass([&] {
-    const SystemTime now = std::chrono::system_clock::now();
+    const rtps::SystemTime now = std::chrono::system_clock::now();
     on_sample({.payload = payload,
                .size = payload.size(),
                .sent = now,
@@ -73,14 +73,14 @@ void HelperEndpoint::deliver(ByteView payload, const SampleIdentity& identity,
   });
 }
 
-void HelperEndpoint::match(const std::set<Guid>& now) {
+void HelperEndpoint::match(const std::set<rtps::Guid>& now) {
   if (matched == now) return;
-  const std::set<Guid> before = std::exchange(matched, now);
+  const std::set<rtps::Guid> before = std::exchange(matched, now);
   gate.pass([&] {
-    for (const Guid& each : before) {
+    for (const rtps::Guid& each : before) {
       if (!now.contains(each) && on_match) on_match(each, Match::kLost);
     }
-    for (const Guid& each : now) {
+    for (const rtps::Guid& each : now) {
       if (before.contains(each)) continue;
       newest = each;
       if (on_match) on_match(each, Match::kMade);
@@ -88,11 +88,11 @@ void HelperEndpoint::match(const std::set<Guid>& now) {
   });
 }
 
-Guid HelperEndpoint::newest_of(const std::set<Guid>& servers) const {
+rtps::Guid HelperEndpoint::newest_of(const std::set<rtps::Guid>& servers) const {
   return servers.contains(newest) ? newest : *servers.begin();
 }
 
-std::int64_t HelperEndpoint::count(const Guid& writer) {
+std::int64_t HelperEndpoint::count(const rtps::Guid& writer) {
   constexpr std::size_t kMostWriters = 1000;  // the network decides how many there are
   if (counted.size() >= kMostWriters) counted.clear();
   return ++counted[writer];

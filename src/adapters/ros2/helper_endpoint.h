@@ -32,24 +32,25 @@ struct HelperEndpoint {
   // Nothing: it is no topic of ROS 2.
   static std::optional<Meaning> meaning_of(const std::string& topic, const std::string& type);
 
-  bool reads() const { return role == EndpointRole::kReader; }
+  bool reads() const { return role == rtps::EndpointRole::kReader; }
   bool reads(Purpose purpose, const std::string& name) const {
     return reads() && meaning.purpose == purpose && meaning.name == name;
   }
   // Returns the frame that asks a helper to make it, if it needs anything.
-  std::optional<culprit_link::Frame> asks_for(const Qos& qos) const;
+  std::optional<culprit_link::Frame> asks_for(const rtps::Qos& qos) const;
 
   // Only the thread that talks to the helper calls these.
-  void deliver(ByteView payload, const SampleIdentity& identity, const SampleIdentity& related);
-  void match(const std::set<Guid>& now);
+  void deliver(rtps::ByteView payload, const rtps::SampleIdentity& identity,
+               const rtps::SampleIdentity& related);
+  void match(const std::set<rtps::Guid>& now);
   // Returns the one of `servers` that matched last. Not empty.
-  Guid newest_of(const std::set<Guid>& servers) const;
+  rtps::Guid newest_of(const std::set<rtps::Guid>& servers) const;
   // Numbers the samples of a writer whose middleware does not.
-  std::int64_t count(const Guid& writer);
+  std::int64_t count(const rtps::Guid& writer);
 
   std::uint32_t id = 0;
-  Guid guid;
-  EndpointRole role = EndpointRole::kReader;
+  rtps::Guid guid;
+  rtps::EndpointRole role = rtps::EndpointRole::kReader;
   Meaning meaning;
   std::string topic;                        // as DDS has it
   std::optional<culprit_link::Frame> wish;  // what asks_for() gave
@@ -59,10 +60,11 @@ struct HelperEndpoint {
   Gate gate;
 
   // Only the thread that talks to the helper uses these.
-  std::set<Guid> matched;
-  Guid newest{};                         // of those, that which matched last
-  Time came_last = kLongAgo;             // a sample
-  std::map<Guid, std::int64_t> counted;  // samples of writers that the middleware does not count
+  std::set<rtps::Guid> matched;
+  rtps::Guid newest{};        // of those, that which matched last
+  Time came_last = kLongAgo;  // a sample
+  // Samples of writers that the middleware does not count.
+  std::map<rtps::Guid, std::int64_t> counted;
 };
 
 }  // namespace culprit::ros2

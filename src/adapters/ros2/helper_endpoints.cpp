@@ -9,13 +9,12 @@
 namespace culprit::ros2 {
 namespace {
 
-namespace link = culprit_link;
 using Purpose = HelperEndpoint::Purpose;
 
 }  // namespace
 
-Guid HelperEndpoints::guid(std::uint32_t id, std::uint8_t kind) const {
-  Guid made;
+rtps::Guid HelperEndpoints::guid(std::uint32_t id, std::uint8_t kind) const {
+  rtps::Guid made;
   std::ranges::copy(prefix_.bytes, made.bytes.begin());
   made.bytes[12] = static_cast<std::uint8_t>(id >> 16);
   made.bytes[13] = static_cast<std::uint8_t>(id >> 8);
@@ -24,8 +23,9 @@ Guid HelperEndpoints::guid(std::uint32_t id, std::uint8_t kind) const {
   return made;
 }
 
-Expected<HelperEndpoints::Ptr> HelperEndpoints::add(EndpointRole role, const std::string& topic,
-                                                    const std::string& type, const Qos& qos,
+Expected<HelperEndpoints::Ptr> HelperEndpoints::add(rtps::EndpointRole role,
+                                                    const std::string& topic,
+                                                    const std::string& type, const rtps::Qos& qos,
                                                     PayloadUse use, SampleCallback on_sample,
                                                     MatchCallback on_match) {
   auto meaning = HelperEndpoint::meaning_of(topic, type);
@@ -49,32 +49,34 @@ Expected<HelperEndpoints::Ptr> HelperEndpoints::add(EndpointRole role, const std
 void HelperEndpoints::remove(const HelperEndpoint& ours) {
   const MutexLock lock(mutex_);
   ours_.erase(ours.id);
-  if (ours.wish) outbox_.queue(link::Remove{ours.id});
+  if (ours.wish) outbox_.queue(culprit_link::Remove{ours.id});
 }
 
-std::optional<std::int64_t> HelperEndpoints::write(const HelperEndpoint& ours, ByteView payload,
-                                                   const SampleIdentity& related) {
+std::optional<std::int64_t> HelperEndpoints::write(const HelperEndpoint& ours,
+                                                   rtps::ByteView payload,
+                                                   const rtps::SampleIdentity& related) {
   const MutexLock lock(mutex_);
   const std::int64_t number = ++last_number_;
-  link::Bytes bytes(payload.begin(), payload.end());
+  culprit_link::Bytes bytes(payload.begin(), payload.end());
   switch (ours.meaning.purpose) {
     case Purpose::kTopic:
-      if (!outbox_.queue(link::Publish{ours.id, std::move(bytes)})) return std::nullopt;
+      if (!outbox_.queue(culprit_link::Publish{ours.id, std::move(bytes)})) return std::nullopt;
       break;
     case Purpose::kRequest:
-      if (!outbox_.queue(link::Request{ours.id, number, std::move(bytes)})) return std::nullopt;
+      if (!outbox_.queue(culprit_link::Request{ours.id, number, std::move(bytes)}))
+        return std::nullopt;
       break;
     case Purpose::kReply:
       for (const auto& [id, each] : ours_) {
         if (each->reads(Purpose::kRequest, ours.meaning.name))
-          outbox_.queue(link::Respond{id, related.sequence, bytes});
+          outbox_.queue(culprit_link::Respond{id, related.sequence, bytes});
       }
       break;
     case Purpose::kOwn: {
-      link::Bytes echo(sizeof ours.id);
+      culprit_link::Bytes echo(sizeof ours.id);
       std::memcpy(echo.data(), &ours.id, sizeof ours.id);
       echo.insert(echo.end(), payload.begin(), payload.end());
-      if (!outbox_.queue(link::Echo{std::move(echo)})) return std::nullopt;
+      if (!outbox_.queue(culprit_link::Echo{std::move(echo)})) return std::nullopt;
       break;
     }
     case Purpose::kInfos:  // the helper's middleware announces its node
@@ -106,7 +108,7 @@ std::vector<HelperEndpoints::Ptr> HelperEndpoints::readers_of(HelperEndpoint::Pu
   return found;
 }
 
-void HelperEndpoints::greet(const link::Frame& first) {
+void HelperEndpoints::greet(const culprit_link::Frame& first) {
   const MutexLock lock(mutex_);
   outbox_.greet(first);
 }
@@ -124,7 +126,7 @@ void HelperEndpoints::close() {
   outbox_.close();
 }
 
-void HelperEndpoints::queue(const link::Frame& frame) {
+void HelperEndpoints::queue(const culprit_link::Frame& frame) {
   const MutexLock lock(mutex_);
   outbox_.queue(frame);
 }

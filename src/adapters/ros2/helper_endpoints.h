@@ -25,19 +25,19 @@ class HelperEndpoints {
  public:
   using Ptr = std::shared_ptr<HelperEndpoint>;
 
-  explicit HelperEndpoints(const GuidPrefix& prefix) : prefix_(prefix) {}
+  explicit HelperEndpoints(const rtps::GuidPrefix& prefix) : prefix_(prefix) {}
 
   // `kind`: as the last byte of DDS's entity ids has it.
-  Guid guid(std::uint32_t id, std::uint8_t kind) const;
+  rtps::Guid guid(std::uint32_t id, std::uint8_t kind) const;
 
   // Errors: it is no topic of ROS 2.
-  Expected<Ptr> add(EndpointRole role, const std::string& topic, const std::string& type,
-                    const Qos& qos, PayloadUse use, SampleCallback on_sample,
+  Expected<Ptr> add(rtps::EndpointRole role, const std::string& topic, const std::string& type,
+                    const rtps::Qos& qos, PayloadUse use, SampleCallback on_sample,
                     MatchCallback on_match);
   void remove(const HelperEndpoint& ours);
   // Gives the number of the sample. Nothing: no helper takes it now.
-  std::optional<std::int64_t> write(const HelperEndpoint& ours, ByteView payload,
-                                    const SampleIdentity& related);
+  std::optional<std::int64_t> write(const HelperEndpoint& ours, rtps::ByteView payload,
+                                    const rtps::SampleIdentity& related);
 
   Ptr find(std::uint32_t id);  // null: it was removed
   std::vector<Ptr> all();
@@ -53,7 +53,7 @@ class HelperEndpoints {
   bool is_stuck();
 
  private:
-  const GuidPrefix prefix_;
+  const rtps::GuidPrefix prefix_;
 
   Mutex mutex_;
   HelperOutbox outbox_ CULPRIT_GUARDED_BY(mutex_);

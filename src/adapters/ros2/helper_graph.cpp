@@ -15,22 +15,22 @@ constexpr std::array<std::uint8_t, 2> kFastDds = {
 constexpr std::uint8_t kReaderKind = 0x04;
 constexpr std::uint8_t kWriterKind = 0x03;
 
-Guid to_guid(const culprit_link::Gid& gid) {
-  Guid guid;
+rtps::Guid to_guid(const culprit_link::Gid& gid) {
+  rtps::Guid guid;
   guid.bytes = gid;
   return guid;
 }
 
-Guid guid_of(const GuidPrefix& prefix, const std::array<std::uint8_t, 4>& entity) {
-  Guid guid;
+rtps::Guid guid_of(const rtps::GuidPrefix& prefix, const std::array<std::uint8_t, 4>& entity) {
+  rtps::Guid guid;
   std::ranges::copy(prefix.bytes, guid.bytes.begin());
   std::ranges::copy(entity, guid.bytes.begin() + prefix.bytes.size());
   return guid;
 }
 
 // For a node without an endpoint that has an id.
-GuidPrefix prefix_of_name(const std::string& node) {
-  GuidPrefix prefix;
+rtps::GuidPrefix prefix_of_name(const std::string& node) {
+  rtps::GuidPrefix prefix;
   std::uint64_t first = 0xcbf29ce484222325;
   for (const char c : node) first = (first ^ static_cast<std::uint8_t>(c)) * 0x100000001b3;
   for (std::size_t i = 0; i < 8; ++i)
@@ -44,16 +44,19 @@ std::optional<NodeName> name_of(const culprit_link::GraphSeen::Node& node) {
 }
 
 Duration to_duration(std::int64_t nanoseconds) {
-  return nanoseconds > 0 ? Duration(nanoseconds) : kInfinite;
+  return nanoseconds > 0 ? Duration(nanoseconds) : rtps::kInfinite;
 }
 
-Qos to_qos(const culprit_link::Quality& quality) {
-  Qos qos;
-  qos.reliability = quality.is_reliable ? Reliability::kReliable : Reliability::kBestEffort;
-  qos.durability = quality.is_transient_local ? Durability::kTransientLocal : Durability::kVolatile;
+rtps::Qos to_qos(const culprit_link::Quality& quality) {
+  rtps::Qos qos;
+  qos.reliability =
+      quality.is_reliable ? rtps::Reliability::kReliable : rtps::Reliability::kBestEffort;
+  qos.durability =
+      quality.is_transient_local ? rtps::Durability::kTransientLocal : rtps::Durability::kVolatile;
   qos.deadline = to_duration(quality.deadline);
   qos.lifespan = to_duration(quality.lifespan);
-  qos.liveliness = quality.asserts_liveliness ? Liveliness::kManualByTopic : Liveliness::kAutomatic;
+  qos.liveliness =
+      quality.asserts_liveliness ? rtps::Liveliness::kManualByTopic : rtps::Liveliness::kAutomatic;
   qos.liveliness_lease = to_duration(quality.lease);
   return qos;
 }
@@ -78,7 +81,7 @@ void HelperGraph::begin(const std::string& middleware, const culprit_link::Gid& 
   own_node_ = std::move(own_node);
 }
 
-HelperGraph::Peer& HelperGraph::peer_of(const GuidPrefix& prefix, Peers& peers) const {
+HelperGraph::Peer& HelperGraph::peer_of(const rtps::GuidPrefix& prefix, Peers& peers) const {
   const auto [found, is_new] = peers.try_emplace(prefix);
   Peer& peer = found->second;
   if (!is_new) return peer;
@@ -91,13 +94,13 @@ HelperGraph::Peer& HelperGraph::peer_of(const GuidPrefix& prefix, Peers& peers) 
   return peer;
 }
 
-std::map<std::string, GuidPrefix> HelperGraph::anchors_of(const SeenGraph& seen) {
+std::map<std::string, rtps::GuidPrefix> HelperGraph::anchors_of(const SeenGraph& seen) {
   std::map<std::string, std::set<std::pair<int, culprit_link::Gid>>> ids;
   for (const auto& endpoint : seen.endpoints) {
     if (const auto name = name_of(endpoint.node))
       ids[name->full()].emplace(rank_as_anchor(endpoint), endpoint.gid);
   }
-  std::map<std::string, GuidPrefix> anchors;
+  std::map<std::string, rtps::GuidPrefix> anchors;
   for (const auto& [node, all] : ids) {
     const auto known = anchors_.find(node);
     const auto stays = std::ranges::find_if(all, [&](const auto& each) {
@@ -110,7 +113,7 @@ std::map<std::string, GuidPrefix> HelperGraph::anchors_of(const SeenGraph& seen)
 }
 
 void HelperGraph::read_endpoints(const SeenGraph& seen, Peers& peers) {
-  const auto anchors = has_guids_ ? std::map<std::string, GuidPrefix>() : anchors_of(seen);
+  const auto anchors = has_guids_ ? std::map<std::string, rtps::GuidPrefix>() : anchors_of(seen);
   for (const auto& each : seen.endpoints) {
     const auto name = name_of(each.node);
     const bool is_own = has_guids_ ? helpers_.contains(to_guid(each.gid).prefix())
@@ -118,10 +121,11 @@ void HelperGraph::read_endpoints(const SeenGraph& seen, Peers& peers) {
     if (is_own) continue;
     if (!is_valid_topic_name(each.topic) || !is_valid_type_name(each.type)) continue;
     if (!name && !has_guids_) continue;
-    const Guid given = to_guid(each.gid);
-    const GuidPrefix prefix = has_guids_ ? given.prefix() : anchors.at(name->full());
-    const EndpointRole role = each.is_publisher ? EndpointRole::kWriter : EndpointRole::kReader;
-    EndpointInfo info;
+    const rtps::Guid given = to_guid(each.gid);
+    const rtps::GuidPrefix prefix = has_guids_ ? given.prefix() : anchors.at(name->full());
+    const rtps::EndpointRole role =
+        each.is_publisher ? rtps::EndpointRole::kWriter : rtps::EndpointRole::kReader;
+    rtps::EndpointInfo info;
     info.topic = mangle_topic(Channel::kTopic, each.topic);
     info.type = mangle_type(Channel::kTopic, each.type);
     // An id that is no GUID has no kind, and not the prefix of its participant.
@@ -142,21 +146,22 @@ void HelperGraph::read_endpoints(const SeenGraph& seen, Peers& peers) {
   }
 }
 
-Guid HelperGraph::made_guid(const GuidPrefix& prefix, const std::string& topic, EndpointRole role) {
+rtps::Guid HelperGraph::made_guid(const rtps::GuidPrefix& prefix, const std::string& topic,
+                                  rtps::EndpointRole role) {
   const auto [found, is_new] = made_.try_emplace({prefix, topic, role});
   if (!is_new) return found->second;
   const std::uint32_t number = ++last_made_;
   found->second =
       guid_of(prefix, {static_cast<std::uint8_t>(0xc0 | (number >> 16 & 0x3f)),
                        static_cast<std::uint8_t>(number >> 8), static_cast<std::uint8_t>(number),
-                       role == EndpointRole::kReader ? kReaderKind : kWriterKind});
+                       role == rtps::EndpointRole::kReader ? kReaderKind : kWriterKind});
   return found->second;
 }
 
 void HelperGraph::read_services(const SeenGraph& seen, Peers& peers) {
-  std::map<std::string, GuidPrefix> newest;
+  std::map<std::string, rtps::GuidPrefix> newest;
   for (const auto& [prefix, peer] : peers) {
-    const auto number_of = [this](const GuidPrefix& each) {
+    const auto number_of = [this](const rtps::GuidPrefix& each) {
       const auto known = peers_.find(each);
       return known == peers_.end() ? last_number_ + 1 : known->second.number;
     };
@@ -168,7 +173,7 @@ void HelperGraph::read_services(const SeenGraph& seen, Peers& peers) {
   for (const auto& each : seen.nodes) {
     const auto name = name_of(each);
     if (!name || name->full() == own_node_ || newest.contains(name->full())) continue;
-    const GuidPrefix prefix = prefix_of_name(name->full());
+    const rtps::GuidPrefix prefix = prefix_of_name(name->full());
     newest[name->full()] = prefix;
     peer_of(prefix, peers).nodes[name->full()] = {name->name_space, name->name, {}, {}};
   }
@@ -181,11 +186,11 @@ void HelperGraph::read_services(const SeenGraph& seen, Peers& peers) {
     NodeEntities& node = peer.nodes.at(name->full());
     for (const Channel channel : {Channel::kRequest, Channel::kReply}) {
       const bool reads = (channel == Channel::kRequest) == each.is_server;
-      EndpointInfo info;
+      rtps::EndpointInfo info;
       info.topic = mangle_topic(channel, each.name);
       info.type = mangle_type(channel, each.type);
       info.guid = made_guid(owner->second, info.topic + " " + name->full(),
-                            reads ? EndpointRole::kReader : EndpointRole::kWriter);
+                            reads ? rtps::EndpointRole::kReader : rtps::EndpointRole::kWriter);
       (reads ? node.readers : node.writers).push_back(info.guid);
       peer.endpoints.emplace(info.guid, std::move(info));
     }
@@ -256,7 +261,8 @@ std::vector<HelperGraph::Change> HelperGraph::take(const SeenGraph& seen, Missin
     if (peer.nodes != before.nodes || known == peers_.end())
       changes.emplace_back(info_of(peer.info, peer.nodes));
     for (const auto& [guid, endpoint] : before.endpoints) {
-      if (!peer.endpoints.contains(guid)) changes.emplace_back(DiscoveryEvent(EndpointGone{guid}));
+      if (!peer.endpoints.contains(guid))
+        changes.emplace_back(DiscoveryEvent(rtps::EndpointGone{guid}));
     }
   }
   peers_ = std::move(now);
@@ -267,7 +273,7 @@ std::vector<HelperGraph::Change> HelperGraph::take(const SeenGraph& seen, Missin
   }
   // A node may make ever new services.
   std::erase_if(made_, [this](const auto& each) {
-    const auto peer = peers_.find(std::get<GuidPrefix>(each.first));
+    const auto peer = peers_.find(std::get<rtps::GuidPrefix>(each.first));
     return peer == peers_.end() || !peer->second.endpoints.contains(each.second);
   });
   return changes;
@@ -275,7 +281,7 @@ std::vector<HelperGraph::Change> HelperGraph::take(const SeenGraph& seen, Missin
 
 std::string HelperGraph::source_of(const ParticipantInfo& participant) {
   if (participant.host.empty() || participant.host == host_name()) return "";
-  const GuidPrefix prefix = participant.guid.prefix();
+  const rtps::GuidPrefix prefix = participant.guid.prefix();
   if (!std::equal(kFastDds.begin(), kFastDds.end(), prefix.bytes.begin())) return "another vendor";
   return "computer " + std::to_string(prefix.bytes[2] << 8 | prefix.bytes[3]);
 }
@@ -286,23 +292,24 @@ std::vector<DiscoveryInfo> HelperGraph::infos() const {
   return all;
 }
 
-std::vector<GuidPrefix> HelperGraph::without_nodes() const {
-  std::vector<GuidPrefix> found;
+std::vector<rtps::GuidPrefix> HelperGraph::without_nodes() const {
+  std::vector<rtps::GuidPrefix> found;
   for (const auto& [prefix, peer] : peers_) {
     if (peer.nodes.empty() && !peer.endpoints.empty()) found.push_back(prefix);
   }
   return found;
 }
 
-const std::set<Guid>& HelperGraph::matching(const std::string& topic, EndpointRole role) const {
-  static const std::set<Guid> kNone;
-  const auto found = by_topic_.find({topic, role == EndpointRole::kWriter});
+const std::set<rtps::Guid>& HelperGraph::matching(const std::string& topic,
+                                                  rtps::EndpointRole role) const {
+  static const std::set<rtps::Guid> kNone;
+  const auto found = by_topic_.find({topic, role == rtps::EndpointRole::kWriter});
   return found == by_topic_.end() ? kNone : found->second;
 }
 
-Guid HelperGraph::writer_of(const std::string& topic, const culprit_link::Gid& given) const {
-  const std::set<Guid>& writers = matching(topic, EndpointRole::kReader);
-  const Guid guid = to_guid(given);
+rtps::Guid HelperGraph::writer_of(const std::string& topic, const culprit_link::Gid& given) const {
+  const std::set<rtps::Guid>& writers = matching(topic, rtps::EndpointRole::kReader);
+  const rtps::Guid guid = to_guid(given);
   return writers.size() == 1 && !writers.contains(guid) ? *writers.begin() : guid;
 }
 

@@ -46,45 +46,46 @@ class HelperGraph {
   bool has_missing() const { return has_missing_; }
   // Participants with endpoints and without a node: their announcement of nodes has not come, or they are not of ROS.
   // Ascending.
-  std::vector<GuidPrefix> without_nodes() const;
+  std::vector<rtps::GuidPrefix> without_nodes() const;
 
   // The announcements that hold now.
   std::vector<DiscoveryInfo> infos() const;
   // The endpoints of others that match one of ours, in its opposite role. DDS names.
-  const std::set<Guid>& matching(const std::string& topic, EndpointRole role) const;
+  const std::set<rtps::Guid>& matching(const std::string& topic, rtps::EndpointRole role) const;
   // The writer that a sample came from: the id that the middleware gives is not always the endpoint's; one publisher
   // alone can have sent it.
-  Guid writer_of(const std::string& topic, const culprit_link::Gid& given) const;
+  rtps::Guid writer_of(const std::string& topic, const culprit_link::Gid& given) const;
 
  private:
   struct Peer {
     ParticipantInfo info;
-    std::map<Guid, EndpointInfo> endpoints;
+    std::map<rtps::Guid, rtps::EndpointInfo> endpoints;
     std::map<std::string, NodeEntities> nodes;  // by full name
     std::uint64_t number = 0;                   // in the order in which they came
   };
-  using Peers = std::map<GuidPrefix, Peer>;
+  using Peers = std::map<rtps::GuidPrefix, Peer>;
   using SeenGraph = culprit_link::GraphSeen;
 
   Peers read(const SeenGraph& seen);
   void read_endpoints(const SeenGraph& seen, Peers& peers);
   void read_services(const SeenGraph& seen, Peers& peers);
-  Peer& peer_of(const GuidPrefix& prefix, Peers& peers) const;
-  std::map<std::string, GuidPrefix> anchors_of(const SeenGraph& seen);
-  Guid made_guid(const GuidPrefix& prefix, const std::string& topic, EndpointRole role);
+  Peer& peer_of(const rtps::GuidPrefix& prefix, Peers& peers) const;
+  std::map<std::string, rtps::GuidPrefix> anchors_of(const SeenGraph& seen);
+  rtps::Guid made_guid(const rtps::GuidPrefix& prefix, const std::string& topic,
+                       rtps::EndpointRole role);
 
   bool has_guids_ = false;  // the middleware's ids are GUIDs
   bool has_pids_ = false;   // and tell the process (Fast DDS)
   culprit_link::Gid own_{};
-  std::set<GuidPrefix> helpers_;  // participants of this helper and its predecessors
+  std::set<rtps::GuidPrefix> helpers_;  // participants of this helper and its predecessors
   std::string own_node_;
   Peers peers_;
-  std::map<std::string, GuidPrefix> anchors_;  // of nodes, where ids are no GUIDs
-  std::map<std::tuple<GuidPrefix, std::string, EndpointRole>, Guid> made_;
+  std::map<std::string, rtps::GuidPrefix> anchors_;  // of nodes, where ids are no GUIDs
+  std::map<std::tuple<rtps::GuidPrefix, std::string, rtps::EndpointRole>, rtps::Guid> made_;
   std::uint32_t last_made_ = 0;
   std::uint64_t last_number_ = 0;
   bool has_missing_ = false;
-  std::map<std::pair<std::string, bool>, std::set<Guid>> by_topic_;  // and whether they read
+  std::map<std::pair<std::string, bool>, std::set<rtps::Guid>> by_topic_;  // and whether they read
 };
 
 }  // namespace culprit::ros2

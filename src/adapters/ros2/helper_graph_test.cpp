@@ -143,15 +143,16 @@ TEST(HelperGraph, StrangersOfAnotherVendorAreOneSource) {
 TEST(HelperGraph, ForgetsServicesThatAreGone) {
   Fed fed;
   const auto server = [&fed] {
-    const auto& all = fed.helper.matching("rq/camera/get_stateRequest", EndpointRole::kWriter);
-    return all.empty() ? Guid() : *all.begin();
+    const auto& all =
+        fed.helper.matching("rq/camera/get_stateRequest", rtps::EndpointRole::kWriter);
+    return all.empty() ? rtps::Guid() : *all.begin();
   };
   fed.take(camera(300));
-  const Guid first = server();
+  const rtps::Guid first = server();
   GraphSeen without = camera(300);
   without.services.clear();
   fed.take(without);
-  EXPECT_EQ(server(), Guid());
+  EXPECT_EQ(server(), rtps::Guid());
   fed.take(camera(300));
   EXPECT_NE(server(), first) << "nothing is kept of each name that there ever was";
 }
@@ -184,7 +185,7 @@ TEST(HelperGraph, ASuccessorHasTheServicesOfItsName) {
   both.endpoints.push_back(publisher("camera", "/light", gid_of(301, 1)));
   fed.take(both);
   const std::string topic = "rq/camera/get_stateRequest";
-  const auto& servers = fed.helper.matching(topic, EndpointRole::kWriter);
+  const auto& servers = fed.helper.matching(topic, rtps::EndpointRole::kWriter);
   ASSERT_EQ(servers.size(), 1U);
   EXPECT_EQ(servers.begin()->bytes[4] | servers.begin()->bytes[5] << 8, 301);
 }
@@ -242,7 +243,7 @@ TEST(HelperGraph, DoesNotMissAKilledHelper) {
 TEST(HelperGraph, TheOnlyPublisherOfATopicWroteItsSamples) {
   Fed fed("rmw_cyclonedds_cpp");
   fed.take(camera(300));
-  Guid publisher_id;
+  rtps::Guid publisher_id;
   publisher_id.bytes = gid_of(300, 1);
   EXPECT_EQ(fed.helper.writer_of("rt/light", Gid{77}), publisher_id);
   GraphSeen two = camera(300);

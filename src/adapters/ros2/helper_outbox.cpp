@@ -8,15 +8,13 @@
 namespace culprit::ros2 {
 namespace {
 
-namespace link = culprit_link;
-
-std::size_t kept_for(const link::Bytes& frame) { return sizeof frame + frame.capacity(); }
+std::size_t kept_for(const culprit_link::Bytes& frame) { return sizeof frame + frame.capacity(); }
 
 }  // namespace
 
-void HelperOutbox::greet(const link::Frame& first) {
+void HelperOutbox::greet(const culprit_link::Frame& first) {
   close();
-  waiting_.push_back(link::encode(first));
+  waiting_.push_back(culprit_link::encode(first));
   bytes_ = kept_for(waiting_.back());
   is_stuck_ = false;
 }
@@ -27,19 +25,19 @@ void HelperOutbox::close() {
   sent_ = bytes_ = 0;
 }
 
-bool HelperOutbox::queue(const link::Frame& frame) {
+bool HelperOutbox::queue(const culprit_link::Frame& frame) {
   if (!is_up_ || is_stuck_) return false;
-  link::Bytes bytes = link::encode(frame);
-  if (bytes.size() > link::kLargestFrame + link::kLengthSize) return true;
+  culprit_link::Bytes bytes = culprit_link::encode(frame);
+  if (bytes.size() > culprit_link::kLargestFrame + culprit_link::kLengthSize) return true;
   bytes_ += kept_for(bytes);
   waiting_.push_back(std::move(bytes));
-  is_stuck_ = bytes_ > link::kLongestQueue;
+  is_stuck_ = bytes_ > culprit_link::kLongestQueue;
   return true;
 }
 
 bool HelperOutbox::send(int socket) {
   while (!waiting_.empty()) {
-    const link::Bytes& first = waiting_.front();
+    const culprit_link::Bytes& first = waiting_.front();
     const ssize_t count = ::send(socket, first.data() + sent_, first.size() - sent_, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return true;

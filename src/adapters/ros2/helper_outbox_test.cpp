@@ -11,8 +11,6 @@
 namespace culprit::ros2 {
 namespace {
 
-namespace link = culprit_link;
-
 // The two ends of a helper's socket.
 class Ends {
  public:
@@ -28,14 +26,14 @@ class Ends {
   int ours() const { return both_[0]; }
   void break_it() { shutdown(both_[1], SHUT_RDWR); }
   // The frames of a helper that reads everything.
-  std::vector<link::Frame> read() {
+  std::vector<culprit_link::Frame> read() {
     std::array<std::uint8_t, 65536> buffer;
     while (true) {
       const ssize_t count = recv(both_[1], buffer.data(), buffer.size(), 0);
       if (count <= 0) break;
       reader_.feed({buffer.data(), static_cast<std::size_t>(count)});
     }
-    std::vector<link::Frame> frames;
+    std::vector<culprit_link::Frame> frames;
     while (auto frame = reader_.next()) frames.push_back(std::move(*frame));
     EXPECT_FALSE(reader_.has_failed());
     return frames;
@@ -43,25 +41,25 @@ class Ends {
 
  private:
   std::array<int, 2> both_{};
-  link::FrameReader reader_;
+  culprit_link::FrameReader reader_;
 };
 
-link::Publish message_of(std::size_t bytes, std::uint32_t id = 1) {
-  return {id, link::Bytes(bytes, 7)};
+culprit_link::Publish message_of(std::size_t bytes, std::uint32_t id = 1) {
+  return {id, culprit_link::Bytes(bytes, 7)};
 }
 
 TEST(HelperOutbox, SendsNothingButTheGreetingBeforeTheHelperHasJoined) {
   Ends ends;
   HelperOutbox outbox;
   EXPECT_FALSE(outbox.queue(message_of(10)));
-  outbox.greet(link::Join{});
+  outbox.greet(culprit_link::Join{});
   EXPECT_FALSE(outbox.queue(message_of(10)));
   EXPECT_TRUE(outbox.send(ends.ours()));
-  EXPECT_EQ(ends.read(), std::vector<link::Frame>{link::Join{}});
+  EXPECT_EQ(ends.read(), std::vector<culprit_link::Frame>{culprit_link::Join{}});
   outbox.begin();
   EXPECT_TRUE(outbox.queue(message_of(10)));
   EXPECT_TRUE(outbox.send(ends.ours()));
-  EXPECT_EQ(ends.read(), std::vector<link::Frame>{message_of(10)});
+  EXPECT_EQ(ends.read(), std::vector<culprit_link::Frame>{message_of(10)});
   EXPECT_FALSE(outbox.has_waiting());
 }
 
@@ -69,7 +67,7 @@ TEST(HelperOutbox, SendsNothingButTheGreetingBeforeTheHelperHasJoined) {
 TEST(HelperOutbox, KeepsNoMoreThanWaits) {
   Ends ends;
   HelperOutbox outbox;
-  outbox.greet(link::Join{});
+  outbox.greet(culprit_link::Join{});
   outbox.begin();
   constexpr std::size_t kMessage = 10'000;
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(outbox.queue(message_of(kMessage)));
@@ -88,16 +86,16 @@ TEST(HelperOutbox, KeepsNoMoreThanWaits) {
 TEST(HelperOutbox, TakesNoMoreThanItsLimitFromAHelperThatDoesNotRead) {
   Ends ends;
   HelperOutbox outbox;
-  outbox.greet(link::Join{});
+  outbox.greet(culprit_link::Join{});
   outbox.begin();
   std::size_t taken = 0;
-  while (taken < 100 && outbox.queue(message_of(link::kLongestQueue / 10))) {
+  while (taken < 100 && outbox.queue(message_of(culprit_link::kLongestQueue / 10))) {
     ++taken;
     EXPECT_TRUE(outbox.send(ends.ours()));
   }
   EXPECT_TRUE(outbox.is_stuck());
   EXPECT_LE(taken, 11U);
-  EXPECT_LT(outbox.memory(), 2 * link::kLongestQueue);
+  EXPECT_LT(outbox.memory(), 2 * culprit_link::kLongestQueue);
   outbox.close();
   EXPECT_FALSE(outbox.has_waiting());
   EXPECT_EQ(outbox.memory(), 0U) << "while no helper runs";
@@ -106,7 +104,7 @@ TEST(HelperOutbox, TakesNoMoreThanItsLimitFromAHelperThatDoesNotRead) {
 TEST(HelperOutbox, KnowsThatTheSocketIsBroken) {
   Ends ends;
   HelperOutbox outbox;
-  outbox.greet(link::Join{});
+  outbox.greet(culprit_link::Join{});
   ends.break_it();
   EXPECT_FALSE(outbox.send(ends.ours()));
 }

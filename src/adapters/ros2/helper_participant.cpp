@@ -31,8 +31,6 @@
 namespace culprit::ros2 {
 namespace {
 
-namespace link = culprit_link;
-
 constexpr Duration kFirstJoin = std::chrono::seconds(20);
 constexpr Duration kSettles = std::chrono::seconds(5);
 constexpr Duration kSoonest = std::chrono::milliseconds(200);
@@ -45,12 +43,12 @@ constexpr auto kLooks = std::chrono::milliseconds(100);
 using Ours = HelperEndpoint;  // one of our readers or writers
 using Purpose = HelperEndpoint::Purpose;
 
-SystemTime to_system_time(std::int64_t nanoseconds) {
-  return SystemTime(std::chrono::nanoseconds(nanoseconds));
+rtps::SystemTime to_system_time(std::int64_t nanoseconds) {
+  return rtps::SystemTime(std::chrono::nanoseconds(nanoseconds));
 }
 
-GuidPrefix random_prefix() {
-  GuidPrefix prefix;
+rtps::GuidPrefix random_prefix() {
+  rtps::GuidPrefix prefix;
   std::random_device random;
   for (std::uint8_t& byte : prefix.bytes) byte = static_cast<std::uint8_t>(random());
   return prefix;
@@ -81,7 +79,7 @@ class Helped final : public Participant::Impl {
     return {};
   }
 
-  const Guid& guid() const override { return guid_; }
+  const rtps::Guid& guid() const override { return guid_; }
   void leave() override {}
   void hold() override {}
   void release() override {}
@@ -93,14 +91,14 @@ class Helped final : public Participant::Impl {
   }
 
   // The middleware shows nothing of datagrams.
-  DatagramSources::Origin origin_of(const GuidPrefix&) const override { return {}; }
-  void prove(const GuidPrefix&, int) override {}
-  Origins& origins() override { return origins_; }
-  Time heard_last(const GuidPrefix&) const override { return live_now(); }
+  rtps::DatagramSources::Origin origin_of(const rtps::GuidPrefix&) const override { return {}; }
+  void prove(const rtps::GuidPrefix&, int) override {}
+  rtps::Origins& origins() override { return origins_; }
+  Time heard_last(const rtps::GuidPrefix&) const override { return live_now(); }
   Time own_came_through() const override { return kNever; }
   void look_at_receivers(Time) override {}
   Time receivers_attended() const override { return kNever; }
-  DatagramFilter::Refused refused() const override { return {}; }
+  rtps::DatagramFilter::Refused refused() const override { return {}; }
   std::uint64_t dropped_here() const override { return dropped_; }
 
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options,
@@ -112,8 +110,8 @@ class Helped final : public Participant::Impl {
     ours_.remove(ours);
     wake_.wake();
   }
-  std::optional<std::int64_t> write(const Ours& ours, ByteView payload,
-                                    const SampleIdentity& related) {
+  std::optional<std::int64_t> write(const Ours& ours, rtps::ByteView payload,
+                                    const rtps::SampleIdentity& related) {
     const auto number = ours_.write(ours, payload, related);
     if (number) wake_.wake();
     return number;
@@ -151,9 +149,9 @@ class Helped final : public Participant::Impl {
 
   // Until it ends. Gives why.
   std::string talk(HelperProcess& process) {
-    reader_ = link::FrameReader();
+    reader_ = culprit_link::FrameReader();
     dropped_by_helper_ = 0;
-    ours_.greet(link::Join{link::kVersion, options_.name_space, options_.name});
+    ours_.greet(culprit_link::Join{culprit_link::kVersion, options_.name_space, options_.name});
     const Time began = live_now();
     came_last_ = began;
     while (!ends_) {
@@ -194,11 +192,11 @@ class Helped final : public Participant::Impl {
   // Once for each participant: those that are not of ROS announce none.
   bool lacks_announcement(Time now) {
     constexpr std::size_t kMost = 1000;
-    const std::vector<GuidPrefix> all = graph_.without_nodes();  // ascending
+    const std::vector<rtps::GuidPrefix> all = graph_.without_nodes();  // ascending
     std::erase_if(nameless_,
                   [&](const auto& each) { return !std::ranges::binary_search(all, each.first); });
     bool lacks = false;
-    for (const GuidPrefix& each : all) {
+    for (const rtps::GuidPrefix& each : all) {
       const auto since = nameless_.try_emplace(each, now).first->second;
       if (helped_for_.contains(each) || now <= later(since, kNamesCome)) continue;
       if (helped_for_.size() >= kMost) helped_for_.clear();
@@ -210,7 +208,7 @@ class Helped final : public Participant::Impl {
 
   void ask_whether_it_works(Time now) {
     asked_last_ = now;
-    ours_.queue(link::Echo{});
+    ours_.queue(culprit_link::Echo{});
   }
 
   // Everything that is there. Not empty: it ended, or means nothing.
@@ -249,11 +247,11 @@ class Helped final : public Participant::Impl {
 
   // ---- what the helper says; each gives why the talk is over
 
-  std::string take(const link::Welcome& welcome) {
-    if (welcome.version != link::kVersion) {
+  std::string take(const culprit_link::Welcome& welcome) {
+    if (welcome.version != culprit_link::kVersion) {
       is_final_ = true;
       return "it speaks version " + std::to_string(welcome.version) +
-             " of the protocol, and culprit version " + std::to_string(link::kVersion) +
+             " of the protocol, and culprit version " + std::to_string(culprit_link::kVersion) +
              ": install the culprit_link of this culprit's release";
     }
     if (is_joined_) return "it joined twice";
@@ -270,15 +268,15 @@ class Helped final : public Participant::Impl {
     return "";
   }
 
-  std::string take(const link::Arrived& sample) {
+  std::string take(const culprit_link::Arrived& sample) {
     const OursPtr ours = ours_.find(sample.id);
     if (!ours || ours->meaning.purpose != Purpose::kTopic || !ours->on_sample) return "";
     ours->came_last = live_now();
     awaited_.erase(sample.id);
-    const Guid writer = graph_.writer_of(ours->topic, sample.writer);
+    const rtps::Guid writer = graph_.writer_of(ours->topic, sample.writer);
     std::int64_t number = sample.number;
     if (number <= 0) number = ours->count(writer);  // a forged one may be beyond 2^63
-    const ByteView payload(sample.payload);
+    const rtps::ByteView payload(sample.payload);
     ours->gate.pass([&] {
       ours->on_sample({.payload = payload.first(given_of(ours->use, payload.size())),
                        .size = sample.size,
@@ -291,44 +289,45 @@ class Helped final : public Participant::Impl {
   }
 
   // The middleware does not say who answered: a server of the service.
-  std::string take(const link::Reply& reply) {
+  std::string take(const culprit_link::Reply& reply) {
     const OursPtr client = ours_.find(reply.id);
     if (!client || client->meaning.purpose != Purpose::kRequest) return "";
     for (const OursPtr& ours : ours_.readers_of(Purpose::kReply, client->meaning.name)) {
-      const std::set<Guid>& servers = graph_.matching(ours->topic, EndpointRole::kReader);
-      const Guid server = servers.empty() ? Guid{} : ours->newest_of(servers);
+      const std::set<rtps::Guid>& servers =
+          graph_.matching(ours->topic, rtps::EndpointRole::kReader);
+      const rtps::Guid server = servers.empty() ? rtps::Guid{} : ours->newest_of(servers);
       ours->deliver(reply.payload, {server, reply.number}, {client->guid, reply.number});
     }
     return "";
   }
 
-  std::string take(const link::Asked& asked) {
+  std::string take(const culprit_link::Asked& asked) {
     const OursPtr server = ours_.find(asked.id);
     if (server && server->meaning.purpose == Purpose::kRequest)
       server->deliver(asked.payload, {ours_.guid(0, 0x03), asked.number}, {});
     return "";
   }
 
-  std::string take(const link::Echo& echo) {
+  std::string take(const culprit_link::Echo& echo) {
     // An endpoint's id is before what it wrote. Our own question is empty.
     if (echo.payload.size() < sizeof(std::uint32_t) || !is_settled_) return "";
     std::uint32_t id = 0;
     std::memcpy(&id, echo.payload.data(), sizeof id);
     const OursPtr writer = ours_.find(id);
     if (!writer || writer->meaning.purpose != Purpose::kOwn) return "";
-    const ByteView payload = ByteView(echo.payload).subspan(sizeof id);
+    const rtps::ByteView payload = rtps::ByteView(echo.payload).subspan(sizeof id);
     for (const OursPtr& ours : ours_.readers_of(Purpose::kOwn, writer->meaning.name))
       ours->deliver(payload, {writer->guid, ours->count(writer->guid)}, {});
     return "";
   }
 
-  std::string take(link::GraphSeen& seen) {
+  std::string take(culprit_link::GraphSeen& seen) {
     last_graph_ = std::move(seen);
     take_graph();
     return "";
   }
 
-  std::string take(const link::Refused& refused) {
+  std::string take(const culprit_link::Refused& refused) {
     const OursPtr ours = ours_.find(refused.id);
     constexpr std::size_t kMost = 100;
     // Once for each reason: a missing package has many types.
@@ -338,13 +337,13 @@ class Helped final : public Participant::Impl {
     return "";
   }
 
-  std::string take(const link::Dropped& dropped) {
+  std::string take(const culprit_link::Dropped& dropped) {
     const std::uint64_t before = std::exchange(dropped_by_helper_, dropped.datagrams);
     if (dropped.datagrams > before) dropped_ += dropped.datagrams - before;
     return "";
   }
 
-  std::string take(const link::Trouble& trouble) {
+  std::string take(const culprit_link::Trouble& trouble) {
     tell_once("the helper program: " + printable(trouble.text));
     return "";
   }
@@ -377,7 +376,7 @@ class Helped final : public Participant::Impl {
   }
 
   void deliver_info(const DiscoveryInfo& info) {
-    const Bytes payload = encode_discovery_info(info, GidSize::kHumbleAndOlder);
+    const rtps::Bytes payload = encode_discovery_info(info, GidSize::kHumbleAndOlder);
     for (const OursPtr& ours : ours_.readers_of(Purpose::kInfos, std::string(kDiscoveryInfoTopic)))
       ours->deliver(payload, {info.participant, ours->count(info.participant)}, {});
   }
@@ -439,19 +438,19 @@ class Helped final : public Participant::Impl {
   const HelperOptions options_;
   const DiscoveryCallback on_discovery_;
   HelperEndpoints ours_;
-  const Guid guid_;
+  const rtps::Guid guid_;
   const WakeFile wake_;
-  Origins origins_;
+  rtps::Origins origins_;
   std::atomic<bool> ends_ = false;
   std::atomic<bool> infos_are_due_ = false;
   std::atomic<bool> rematches_ = false;     // an endpoint was added
   std::atomic<std::uint64_t> dropped_ = 0;  // datagrams, by all helpers so far
 
   // Of the thread.
-  link::FrameReader reader_;
+  culprit_link::FrameReader reader_;
   HelperGraph graph_;
-  std::optional<link::GraphSeen> last_graph_;  // of this helper
-  std::uint64_t dropped_by_helper_ = 0;        // datagrams, as this one reported last
+  std::optional<culprit_link::GraphSeen> last_graph_;  // of this helper
+  std::uint64_t dropped_by_helper_ = 0;                // datagrams, as this one reported last
   Time came_last_ = kLongAgo;
   Time asked_last_ = kLongAgo;
   Time joined_ = kLongAgo;
@@ -460,9 +459,9 @@ class Helped final : public Participant::Impl {
   std::set<std::uint32_t> awaited_;  // of our readers: samples came before the last helper's end
   bool is_final_ = false;            // no other one would do better
   std::set<std::string> told_;
-  std::map<GuidPrefix, Time> nameless_;  // participants without a node, since when
-  std::set<GuidPrefix> helped_for_;      // those of them for which a helper was replaced
-  SeldomTimes replaced_;                 // for them
+  std::map<rtps::GuidPrefix, Time> nameless_;  // participants without a node, since when
+  std::set<rtps::GuidPrefix> helped_for_;      // those of them for which a helper was replaced
+  SeldomTimes replaced_;                       // for them
 
   Mutex mutex_;
   ConditionVariable changed_;
@@ -481,7 +480,7 @@ class HelpedReader final : public Reader::Impl {
     ours_->gate.close();
     participant_.remove(*ours_);
   }
-  const Guid& guid() const override { return ours_->guid; }
+  const rtps::Guid& guid() const override { return ours_->guid; }
 
  private:
   Helped& participant_;
@@ -496,8 +495,9 @@ class HelpedWriter final : public Writer::Impl {
     ours_->gate.close();
     participant_.remove(*ours_);
   }
-  const Guid& guid() const override { return ours_->guid; }
-  std::optional<std::int64_t> write(ByteView payload, const SampleIdentity& related) override {
+  const rtps::Guid& guid() const override { return ours_->guid; }
+  std::optional<std::int64_t> write(rtps::ByteView payload,
+                                    const rtps::SampleIdentity& related) override {
     return participant_.write(*ours_, payload, related);
   }
   void forget_unacknowledged() override {}
@@ -510,7 +510,7 @@ class HelpedWriter final : public Writer::Impl {
 
 Expected<std::unique_ptr<Reader>> Helped::create_reader(ReaderOptions options,
                                                         SampleCallback on_sample) {
-  auto ours = ours_.add(EndpointRole::kReader, options.topic, options.type, options.qos,
+  auto ours = ours_.add(rtps::EndpointRole::kReader, options.topic, options.type, options.qos,
                         options.payload, std::move(on_sample), std::move(options.on_match));
   if (!ours) return Error{ours.error()};
   added(**ours);
@@ -518,7 +518,7 @@ Expected<std::unique_ptr<Reader>> Helped::create_reader(ReaderOptions options,
 }
 
 Expected<std::unique_ptr<Writer>> Helped::create_writer(WriterOptions options) {
-  auto ours = ours_.add(EndpointRole::kWriter, options.topic, options.type, options.qos,
+  auto ours = ours_.add(rtps::EndpointRole::kWriter, options.topic, options.type, options.qos,
                         PayloadUse::kWhole, {}, std::move(options.on_match));
   if (!ours) return Error{ours.error()};
   added(**ours);

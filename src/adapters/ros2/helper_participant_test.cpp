@@ -55,7 +55,7 @@ class HelpedDomain {
 
   const TestDomain domain{};
   const test::TestFolder folder;
-  EventLog<std::string> troubles;
+  rtps::EventLog<std::string> troubles;
 };
 
 // A node on DDS with a service of its own.
@@ -91,25 +91,25 @@ TEST(HelperParticipant, ShowsTheGraphAsDiscoveryDoes) {
 TEST(HelperParticipant, ReceivesSamplesAndPublishes) {
   HelpedDomain robots;
   HelpedManager manager(robots.helped());
-  EventLog<double> there, here;
+  rtps::EventLog<double> there, here;
   LiveContext robot(robots.domain.options());
   const auto node = std::move(*Node::create(*robot, {"/", "robot"}));
   auto light = std::move(*node->create_publisher<msg::Float64>("/light"));
   const auto hears = std::move(*node->create_subscription<msg::Float64>(
-      "/wish", qos::kDefault, [&](const msg::Float64& wish) { there.add(wish.data); }));
-  const auto subscription = std::move(
-      *RawSubscription::create(manager.node, "/light", msg::Float64::kType, qos::kSensorData,
-                               PayloadUse::kWhole, [&](const Sample& sample) {
-                                 EXPECT_NE(sample.identity.writer, Guid{});
-                                 if (const auto message = decode<msg::Float64>(sample.payload))
-                                   here.add(message->data);
-                               }));
-  const auto wish =
-      std::move(*RawPublisher::create(manager.node, "/wish", msg::Float64::kType, qos::kDefault));
-  const Time end = later(live_now(), kPatience);
+      "/wish", rtps::qos::kDefault, [&](const msg::Float64& wish) { there.add(wish.data); }));
+  const auto subscription = std::move(*RawSubscription::create(
+      manager.node, "/light", msg::Float64::kType, rtps::qos::kSensorData, PayloadUse::kWhole,
+      [&](const Sample& sample) {
+        EXPECT_NE(sample.identity.writer, rtps::Guid{});
+        if (const auto message = rtps::decode<msg::Float64>(sample.payload))
+          here.add(message->data);
+      }));
+  const auto wish = std::move(
+      *RawPublisher::create(manager.node, "/wish", msg::Float64::kType, rtps::qos::kDefault));
+  const Time end = later(live_now(), rtps::kPatience);
   while (live_now() < end && (there.all().empty() || here.all().empty())) {
     light.publish({1.5});
-    wish->publish(encode(msg::Float64{2.5}));
+    wish->publish(rtps::encode(msg::Float64{2.5}));
     std::this_thread::sleep_for(20ms);
   }
   ASSERT_FALSE(here.all().empty());
@@ -124,24 +124,24 @@ TEST(HelperParticipant, CallsServicesAndServes) {
   HelpedManager manager(robots.helped());
   const auto client = std::move(*ServiceClient::create(
       manager.node, {"/robot/get_parameters", std::string(srv::GetParameters::kType)},
-      qos::kParameterServices));
-  EventLog<CallOutcome> outcomes;
-  client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kPatience,
+      rtps::qos::kParameterServices));
+  rtps::EventLog<CallOutcome> outcomes;
+  client->call(rtps::encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, rtps::kPatience,
                [&](const CallResult& result) { outcomes.add(result.outcome); });
   ASSERT_TRUE(outcomes.wait_for_count(1));
   EXPECT_EQ(outcomes.all()[0], CallOutcome::kAnswered);
 
   const ServiceName pause{"/culprit/pause", std::string(srv::Trigger::kType)};
-  const auto server =
-      std::move(*ServiceServer::create(manager.node, pause, qos::kServices, [](ByteView) {
-        return encode(srv::Trigger::Response{true, "paused"});
+  const auto server = std::move(
+      *ServiceServer::create(manager.node, pause, rtps::qos::kServices, [](rtps::ByteView) {
+        return rtps::encode(srv::Trigger::Response{true, "paused"});
       }));
   NodeEntry person(*robot.context, {"/", "person"});
   const auto asks = std::move(*ServiceClient::create(person, pause));
-  EventLog<std::string> answers;
-  asks->call(encode(srv::Trigger::Request{}), Repeat::kUntilAnswered, kPatience,
+  rtps::EventLog<std::string> answers;
+  asks->call(rtps::encode(srv::Trigger::Request{}), Repeat::kUntilAnswered, rtps::kPatience,
              [&](const CallResult& result) {
-               const auto response = decode<srv::Trigger::Response>(result.reply);
+               const auto response = rtps::decode<srv::Trigger::Response>(result.reply);
                answers.add(response ? response->message : "none");
              });
   ASSERT_TRUE(answers.wait_for_count(1));
@@ -155,14 +155,14 @@ TEST(HelperParticipant, KnowsThatItsHelperDroppedASampleBeforeTheNextOneComes) {
   const auto node = std::move(*Node::create(*robot, {"/", "robot"}));
   auto light = std::move(*node->create_publisher<msg::Float64>("/light"));
   SampleGaps gaps;
-  EventLog<SampleGaps::Step> steps;
+  rtps::EventLog<SampleGaps::Step> steps;
   const auto subscription = std::move(*RawSubscription::create(
-      manager.node, "/light", msg::Float64::kType, qos::kSensorData, PayloadUse::kWhole,
+      manager.node, "/light", msg::Float64::kType, rtps::qos::kSensorData, PayloadUse::kWhole,
       [&](const Sample& sample) {
         steps.add(gaps.next(sample.identity.writer, sample.identity.sequence,
                             manager.context->participant().dropped_here()));
       }));
-  const Time end = later(live_now(), kPatience);
+  const Time end = later(live_now(), rtps::kPatience);
   while (live_now() < end && steps.all().size() < 5) {
     light.publish({1.5});
     std::this_thread::sleep_for(20ms);
@@ -202,7 +202,7 @@ TEST(HelperParticipant, IsDeafWithoutAHelperForgetsNothingAndReplacesOneThatHang
   HelpedDomain robots;
   HelpedRobot robot(robots.domain);
   Executor executor;
-  EventLog<GraphChange> changes;
+  rtps::EventLog<GraphChange> changes;
   Graph::Options graph;
   graph.listener = [&](const GraphChange& change) { changes.add(change); };
   auto context = std::move(*Context::create(executor, robots.helped(), std::move(graph)));
@@ -213,12 +213,12 @@ TEST(HelperParticipant, IsDeafWithoutAHelperForgetsNothingAndReplacesOneThatHang
     return joined != nullptr && joined->node.name == "/robot";
   };
   const auto hears_since = [&](Time since) {
-    const Time end = later(live_now(), kPatience);
+    const Time end = later(live_now(), rtps::kPatience);
     while (hearing->heard() < since && live_now() < end) std::this_thread::sleep_for(10ms);
     return live_now() < end;
   };
   const auto is_replaced = [&](std::size_t started) {
-    const Time end = later(live_now(), kPatience);
+    const Time end = later(live_now(), rtps::kPatience);
     while (robots.started().size() < started && live_now() < end) std::this_thread::sleep_for(5ms);
     return live_now() < end;
   };
@@ -226,7 +226,7 @@ TEST(HelperParticipant, IsDeafWithoutAHelperForgetsNothingAndReplacesOneThatHang
   EXPECT_TRUE(hears_since(live_now()));
   kill(robots.started().back(), SIGSTOP);
   const Time stopped = live_now();
-  while (hearing->doubtful() > live_now() && live_now() < later(stopped, kPatience))
+  while (hearing->doubtful() > live_now() && live_now() < later(stopped, rtps::kPatience))
     std::this_thread::sleep_for(10ms);
   EXPECT_LE(hearing->doubtful(), live_now());
   EXPECT_TRUE(robots.troubles.wait_for_one(
@@ -253,17 +253,18 @@ TEST(HelperParticipant, HandsARequestToOneHelperOnly) {
   NodeEntry node(*robot, {"/", "robot"});
   const ServiceName never{"/robot/never", std::string(srv::Trigger::kType)};
   std::atomic<int> asked = 0;
-  const auto server = std::move(*ServiceServer::create(node, never, qos::kServices, [&](ByteView) {
-    ++asked;
-    return Bytes();
-  }));
+  const auto server =
+      std::move(*ServiceServer::create(node, never, rtps::qos::kServices, [&](rtps::ByteView) {
+        ++asked;
+        return rtps::Bytes();
+      }));
   const std::string counts = (robots.folder / "counts").string();
   HelpedManager manager(robots.helped({"--counts", counts}));
   const auto client = std::move(*ServiceClient::create(manager.node, never));
-  EventLog<CallOutcome> outcomes;
-  client->call(encode(srv::Trigger::Request{}), Repeat::kNever, 8s,
+  rtps::EventLog<CallOutcome> outcomes;
+  client->call(rtps::encode(srv::Trigger::Request{}), Repeat::kNever, 8s,
                [&](const CallResult& result) { outcomes.add(result.outcome); });
-  const Time end = later(live_now(), kPatience);
+  const Time end = later(live_now(), rtps::kPatience);
   while (asked == 0 && live_now() < end) std::this_thread::sleep_for(5ms);
   kill(robots.started().back(), SIGKILL);
   ASSERT_TRUE(outcomes.wait_for_count(1));

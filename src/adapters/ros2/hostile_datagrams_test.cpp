@@ -32,7 +32,7 @@ class Attacker {
   Attacker(const Attacker&) = delete;
 
   void aim(const ParticipantInfo& victim) { port_ = victim.metatraffic.front().port; }
-  void send(const Bytes& bytes) const {
+  void send(const rtps::Bytes& bytes) const {
     for (const int port : {port_, port_ + 1}) {
       sockaddr_in to{};
       to.sin_family = AF_INET;
@@ -55,18 +55,18 @@ class HostileDatagrams : public testing::Test {
       if (is_victim) attacker.aim(info);
       return is_victim;
     }));
-    writer = std::move(*robot->create_writer({"t", "T", qos::kDiscoveryInfoWriter, "", {}}));
+    writer = std::move(*robot->create_writer({"t", "T", rtps::qos::kDiscoveryInfoWriter, "", {}}));
     reader = std::move(*victim->create_reader(
-        {"t", "T", qos::kDiscoveryInfoReader, PayloadUse::kWhole, "", {}},
+        {"t", "T", rtps::qos::kDiscoveryInfoReader, PayloadUse::kWhole, "", {}},
         [this](const Sample& sample) { samples.add(sample.identity.sequence); }));
     EXPECT_TRUE(speaks());
   }
 
   // The robot's writers, as the attacker knows them: its own, and those that announce endpoints.
-  std::vector<Guid> writers() const {
-    std::vector<Guid> all{writer->guid()};
+  std::vector<rtps::Guid> writers() const {
+    std::vector<rtps::Guid> all{writer->guid()};
     for (const std::uint8_t entity : {3, 4}) {
-      Guid guid = robot->guid();
+      rtps::Guid guid = robot->guid();
       guid.bytes[13] = 0, guid.bytes[14] = entity, guid.bytes[15] = 0xc2;
       all.push_back(guid);
     }
@@ -79,18 +79,18 @@ class HostileDatagrams : public testing::Test {
   }
   // Whether another writer of the robot is found.
   bool discovers() {
-    EventLog<int> matches;
+    rtps::EventLog<int> matches;
     const std::string topic = "topic" + std::to_string(++topics_);
-    const auto own = victim->create_reader({topic, "T", qos::kSensorData, PayloadUse::kWhole, "",
-                                            [&](const Guid&, Match) { matches.add(1); }},
+    const auto own = victim->create_reader({topic, "T", rtps::qos::kSensorData, PayloadUse::kWhole,
+                                            "", [&](const rtps::Guid&, Match) { matches.add(1); }},
                                            [](const Sample&) {});
     const auto other = robot->create_writer({topic, "T", {}, "", {}});
     return own && other && matches.wait_for_count(1);
   }
 
-  EventLog<std::int64_t> samples;
+  rtps::EventLog<std::int64_t> samples;
   TestDomain domain;
-  EventLog<ParticipantInfo> seen;  // by the robot
+  rtps::EventLog<ParticipantInfo> seen;  // by the robot
   std::unique_ptr<Participant> robot = join(domain, [this](const DiscoveryEvent& event) {
     if (const auto* info = std::get_if<ParticipantInfo>(&event)) seen.add(*info);
   });
@@ -104,12 +104,12 @@ class HostileDatagrams : public testing::Test {
 };
 
 TEST_F(HostileDatagrams, AbsurdSequenceNumbersMakeNobodyDeaf) {
-  for (const Guid& each : writers()) {
-    attacker.send(TestDatagram(each.prefix()).gap(each, 1, kFarAhead).bytes());
+  for (const rtps::Guid& each : writers()) {
+    attacker.send(rtps::TestDatagram(each.prefix()).gap(each, 1, kFarAhead).bytes());
     attacker.send(
-        TestDatagram(each.prefix()).heartbeat(each, kFarAhead, kFarAhead, 1 << 30).bytes());
-    attacker.send(TestDatagram(each.prefix()).heartbeat(each, 1, kFarAhead, 1 << 29).bytes());
-    attacker.send(TestDatagram(each.prefix()).data(each, kFarAhead).bytes());
+        rtps::TestDatagram(each.prefix()).heartbeat(each, kFarAhead, kFarAhead, 1 << 30).bytes());
+    attacker.send(rtps::TestDatagram(each.prefix()).heartbeat(each, 1, kFarAhead, 1 << 29).bytes());
+    attacker.send(rtps::TestDatagram(each.prefix()).data(each, kFarAhead).bytes());
   }
   EXPECT_TRUE(speaks());
   EXPECT_TRUE(discovers());
@@ -118,8 +118,8 @@ TEST_F(HostileDatagrams, AbsurdSequenceNumbersMakeNobodyDeaf) {
 }
 
 TEST_F(HostileDatagrams, AbsurdRangesMakeNobodyDeaf) {
-  for (const Guid& each : writers()) {
-    for (const Bytes& datagram : absurd_ranges(each)) attacker.send(datagram);
+  for (const rtps::Guid& each : writers()) {
+    for (const rtps::Bytes& datagram : rtps::absurd_ranges(each)) attacker.send(datagram);
   }
   EXPECT_TRUE(speaks());
   EXPECT_TRUE(discovers());
@@ -128,10 +128,10 @@ TEST_F(HostileDatagrams, AbsurdRangesMakeNobodyDeaf) {
 
 TEST_F(HostileDatagrams, FragmentsOfHugeSamplesTakeNoMemory) {
   const std::size_t before = resident_bytes();
-  for (const Guid& each : writers()) {
+  for (const rtps::Guid& each : writers()) {
     for (std::int64_t sequence = 2; sequence < 252; ++sequence)
       attacker.send(
-          TestDatagram(each.prefix()).fragment(each, sequence, 1, 1000, 20'000'000).bytes());
+          rtps::TestDatagram(each.prefix()).fragment(each, sequence, 1, 1000, 20'000'000).bytes());
   }
   EXPECT_TRUE(discovers());
   EXPECT_LT(resident_bytes(), before + (64u << 20));
@@ -139,10 +139,10 @@ TEST_F(HostileDatagrams, FragmentsOfHugeSamplesTakeNoMemory) {
 
 TEST_F(HostileDatagrams, FragmentsWithinTheBudgetTakeNoMoreThanIt) {
   const std::size_t before = resident_bytes();
-  for (const Guid& each : writers()) {
+  for (const rtps::Guid& each : writers()) {
     for (std::int64_t sequence = 2; sequence < 252; ++sequence)
       attacker.send(
-          TestDatagram(each.prefix()).fragment(each, sequence, 1, 1000, 1'000'000).bytes());
+          rtps::TestDatagram(each.prefix()).fragment(each, sequence, 1, 1000, 1'000'000).bytes());
   }
   EXPECT_TRUE(discovers());
   EXPECT_LT(resident_bytes(), before + (64u << 20));
@@ -151,7 +151,7 @@ TEST_F(HostileDatagrams, FragmentsWithinTheBudgetTakeNoMoreThanIt) {
 // Each takes the middleware milliseconds on the thread that receives.
 TEST_F(HostileDatagrams, ParticipantsThatOneSourceMakesUpComeInSlowly) {
   for (std::uint16_t i = 0; i < 1100; ++i) {
-    attacker.send(announcement_of(i));
+    attacker.send(rtps::announcement_of(i));
     if (i % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   EXPECT_TRUE(discovers());
@@ -164,7 +164,7 @@ TEST_F(HostileDatagrams, ParticipantsThatAKnownOneMakesUpComeInSlowly) {
   constexpr std::size_t kPrefix = 8;
   constexpr std::size_t kNumber = 40;  // the low half of the sample's, little endian
   for (std::uint16_t i = 0; i < 1100; ++i) {
-    Bytes datagram = announcement_of(i);
+    rtps::Bytes datagram = rtps::announcement_of(i);
     std::ranges::copy(robot->guid().prefix().bytes, datagram.begin() + kPrefix);
     datagram[kNumber] = static_cast<std::uint8_t>(i + 2);
     datagram[kNumber + 1] = static_cast<std::uint8_t>((i + 2) >> 8);
@@ -180,7 +180,7 @@ TEST_F(HostileDatagrams, ParticipantsThatAKnownOneMakesUpComeInSlowly) {
 // the thread there works.
 TEST_F(HostileDatagrams, TheOwnAnnouncementsComeThrough) {
   const auto is_within = [&](auto condition) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
+    const auto end = std::chrono::steady_clock::now() + rtps::kPatience;
     while (!condition() && std::chrono::steady_clock::now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     return condition();
@@ -198,7 +198,7 @@ TEST(Hearing, IsDoubtfulWithoutTheThreadThatSpeaks) {
   const auto hearing = Hearing::begin(*participant, executor);
   ASSERT_TRUE(hearing);
   const auto is_within = [&](auto condition) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
+    const auto end = std::chrono::steady_clock::now() + rtps::kPatience;
     while (!condition() && std::chrono::steady_clock::now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     return condition();

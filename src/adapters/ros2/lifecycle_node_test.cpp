@@ -37,16 +37,17 @@ struct Manager {
       : context(domain.options()),
         node(*context, {"/", "manager"}),
         client(std::move(*ServiceClient::create(
-            node, {"/robot/change_state", std::string(srv::ChangeState::kType)}, qos::kServices,
+            node, {"/robot/change_state", std::string(srv::ChangeState::kType)},
+            rtps::qos::kServices,
             {{"/robot/get_state", std::string(srv::GetState::kType)},
-             encode(srv::GetState::Request{})}))) {}
+             rtps::encode(srv::GetState::Request{})}))) {}
 
   bool change(const msg::Transition& transition) {
-    EventLog<bool> answers;
+    rtps::EventLog<bool> answers;
     client->call(
-        encode(srv::ChangeState::Request{transition}), Repeat::kNever, kPatience,
+        rtps::encode(srv::ChangeState::Request{transition}), Repeat::kNever, rtps::kPatience,
         [&](const CallResult& result) {
-          const auto response = decode<srv::ChangeState::Response>(result.reply);
+          const auto response = rtps::decode<srv::ChangeState::Response>(result.reply);
           answers.add(result.outcome == CallOutcome::kAnswered && response && response->success);
         });
     return answers.wait_for_count(1) && answers.all().front();
@@ -129,10 +130,10 @@ TEST(LifecycleNode, TellsEachStep) {
   const TestDomain domain;
   Managed robot(domain);
   Manager manager(domain);
-  EventLog<msg::TransitionEvent> events;
+  rtps::EventLog<msg::TransitionEvent> events;
   const auto subscription = Subscription::create(
-      manager.node, "/robot/transition_event", msg::TransitionEvent::kType, qos::kDefault,
-      [&](ByteView payload) { events.add(*decode<msg::TransitionEvent>(payload)); });
+      manager.node, "/robot/transition_event", msg::TransitionEvent::kType, rtps::qos::kDefault,
+      [&](rtps::ByteView payload) { events.add(*rtps::decode<msg::TransitionEvent>(payload)); });
   ASSERT_TRUE(subscription);
   // Volatile: until both sides have matched, events are missed.
   while (events.all().empty()) {
@@ -160,20 +161,20 @@ TEST(LifecycleNode, ListsItsStatesAndTransitions) {
   LiveContext other(domain.options());
   std::unique_ptr<Node> node;
   other.run([&] { node = std::move(*Node::create(*other, {"/", "manager"})); });
-  EventLog<std::size_t> states, transitions, graph;
+  rtps::EventLog<std::size_t> states, transitions, graph;
   const auto states_client =
       node->create_client<srv::GetAvailableStates>("/robot/get_available_states");
-  (*states_client)->call({}, Repeat::kUntilAnswered, kPatience, [&](const auto& answer) {
+  (*states_client)->call({}, Repeat::kUntilAnswered, rtps::kPatience, [&](const auto& answer) {
     states.add(answer.response->available_states.size());
   });
   const auto now_client =
       node->create_client<srv::GetAvailableTransitions>("/robot/get_available_transitions");
-  (*now_client)->call({}, Repeat::kUntilAnswered, kPatience, [&](const auto& answer) {
+  (*now_client)->call({}, Repeat::kUntilAnswered, rtps::kPatience, [&](const auto& answer) {
     transitions.add(answer.response->available_transitions.size());
   });
   const auto all_client =
       node->create_client<srv::GetAvailableTransitions>("/robot/get_transition_graph");
-  (*all_client)->call({}, Repeat::kUntilAnswered, kPatience, [&](const auto& answer) {
+  (*all_client)->call({}, Repeat::kUntilAnswered, rtps::kPatience, [&](const auto& answer) {
     graph.add(answer.response->available_transitions.size());
   });
   ASSERT_TRUE(states.wait_for_count(1));

@@ -51,7 +51,7 @@ inline std::unique_ptr<Participant> join(
   return std::move(*participant);
 }
 
-inline const Bytes kSmallPayload{0, 1, 0, 0, 1, 2, 3, 4};
+inline const rtps::Bytes kSmallPayload{0, 1, 0, 0, 1, 2, 3, 4};
 
 // A context whose executor runs on a thread of its own.
 class LiveContext {
@@ -69,7 +69,7 @@ class LiveContext {
 
   Context& operator*() { return *context_; }
   Context* operator->() { return context_.get(); }
-  EventLog<GraphChange>& changes() { return changes_; }
+  rtps::EventLog<GraphChange>& changes() { return changes_; }
 
   // Runs `task` on the executor's thread, and waits for it.
   void run(std::function<void()> task) {
@@ -115,7 +115,7 @@ class LiveContext {
   }
 
   Executor executor_;
-  EventLog<GraphChange> changes_;
+  rtps::EventLog<GraphChange> changes_;
   std::unique_ptr<Context> context_;
   std::thread thread_;
 };

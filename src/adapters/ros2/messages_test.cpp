@@ -13,11 +13,11 @@ namespace {
 // Bytes worked out by hand from the .msg files and the rules of XCDR1; none of them comes from our
 // writer.
 template <class Message>
-void expect_golden(const Message& message, const Bytes& payload) {
-  EXPECT_EQ(encode(message), payload);
-  const auto read = decode<Message>(payload);
+void expect_golden(const Message& message, const rtps::Bytes& payload) {
+  EXPECT_EQ(rtps::encode(message), payload);
+  const auto read = rtps::decode<Message>(payload);
   ASSERT_TRUE(read);
-  EXPECT_EQ(encode(*read), payload);
+  EXPECT_EQ(rtps::encode(*read), payload);
 }
 
 TEST(Messages, Float64IsEightBytes) {
@@ -91,17 +91,18 @@ TEST(Messages, LogEndsWithItsLine) {
 }
 
 TEST(Messages, RequestsWithoutFieldsAreOneByte) {
-  EXPECT_EQ(encode(srv::GetState::Request{}), (Bytes{0, 1, 0, 0, 0}));
-  EXPECT_EQ(encode(srv::Trigger::Request{}), (Bytes{0, 1, 0, 0, 0}));
+  EXPECT_EQ(rtps::encode(srv::GetState::Request{}), (rtps::Bytes{0, 1, 0, 0, 0}));
+  EXPECT_EQ(rtps::encode(srv::Trigger::Request{}), (rtps::Bytes{0, 1, 0, 0, 0}));
 }
 
 TEST(Messages, ChangeModeIsAString) {
-  EXPECT_EQ(encode(srv::ChangeMode::Request{"a"}), (Bytes{0, 1, 0, 0, 2, 0, 0, 0, 'a', 0}));
+  EXPECT_EQ(rtps::encode(srv::ChangeMode::Request{"a"}),
+            (rtps::Bytes{0, 1, 0, 0, 2, 0, 0, 0, 'a', 0}));
 }
 
 TEST(Messages, ListParametersAlignsItsDepth) {
-  EXPECT_EQ(encode(srv::ListParameters::Request{{}, 1}),
-            (Bytes{0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(rtps::encode(srv::ListParameters::Request{{}, 1}),
+            (rtps::Bytes{0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}));
 }
 
 TEST(Messages, TimeOfDayIsSecondsAndNanoseconds) {
@@ -150,11 +151,11 @@ TEST(Messages, HaveAsManyFieldsAsTheirDefinitions) {
 }
 
 template <class Message>
-void read_or_refuse(const Bytes& bytes) {
-  decode<Message>(bytes);
+void read_or_refuse(const rtps::Bytes& bytes) {
+  rtps::decode<Message>(bytes);
 }
 
-RC_GTEST_PROP(Messages, AnyBytesAreReadOrRefused, (Bytes bytes)) {
+RC_GTEST_PROP(Messages, AnyBytesAreReadOrRefused, (rtps::Bytes bytes)) {
   bytes.insert(bytes.begin(), {0, static_cast<std::uint8_t>(*rc::gen::inRange(0, 2)), 0, 0});
   read_or_refuse<DiagnosticArray>(bytes);
   read_or_refuse<TransitionEvent>(bytes);
@@ -173,8 +174,8 @@ RC_GTEST_PROP(Messages, DiagnosticsSurviveTheWire,
     status.name = value;
     status.values.push_back({key, value});
   }
-  RC_ASSERT(decode<DiagnosticArray>(encode(array, Endianness::kBig)) == array);
-  RC_ASSERT(decode<DiagnosticArray>(encode(array)) == array);
+  RC_ASSERT(rtps::decode<DiagnosticArray>(rtps::encode(array, rtps::Endianness::kBig)) == array);
+  RC_ASSERT(rtps::decode<DiagnosticArray>(rtps::encode(array)) == array);
 }
 
 }  // namespace

@@ -40,10 +40,11 @@ Node::Node(Context& context, NodeName name)
 Node::~Node() = default;
 
 Expected<void> Node::open() {
-  auto rosout = create_publisher<msg::Log>("/rosout", qos::kRosout);
+  auto rosout = create_publisher<msg::Log>("/rosout", rtps::qos::kRosout);
   if (!rosout) return Error{rosout.error()};
   rosout_ = std::move(*rosout);
-  auto events = create_publisher<msg::ParameterEvent>("/parameter_events", qos::kParameterEvents);
+  auto events =
+      create_publisher<msg::ParameterEvent>("/parameter_events", rtps::qos::kParameterEvents);
   if (!events) return Error{events.error()};
   parameter_events_ = std::move(*events);
   if (auto opened = open_parameter_services(); !opened) return opened;
@@ -54,7 +55,7 @@ template <class Service>
 Expected<void> Node::serve(
     std::string_view name,
     std::function<typename Service::Response(const typename Service::Request&)> handler) {
-  auto server = create_service<Service>(name, std::move(handler), qos::kParameterServices);
+  auto server = create_service<Service>(name, std::move(handler), rtps::qos::kParameterServices);
   if (!server) return Error{server.error()};
   parameter_services_.push_back(std::move(*server));
   return {};

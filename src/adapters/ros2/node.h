@@ -59,11 +59,11 @@ class Client {
 
   void call(const typename Service::Request& request, Repeat repeat, Duration timeout,
             Callback callback) {
-    raw_->call(encode(request), repeat, timeout,
+    raw_->call(rtps::encode(request), repeat, timeout,
                [this, callback = std::move(callback)](const CallResult& result) {
                  Answer answer{result.outcome, {}};
                  if (result.outcome == CallOutcome::kAnswered)
-                   answer.response = decode<typename Service::Response>(result.reply);
+                   answer.response = rtps::decode<typename Service::Response>(result.reply);
                  tasks_.post([callback, answer = std::move(answer)] { callback(answer); });
                });
   }
@@ -94,7 +94,7 @@ class Node {
 
   template <class Message>
   Expected<Publisher<Message>> create_publisher(std::string_view topic,
-                                                const Qos& qos = qos::kDefault) {
+                                                const rtps::Qos& qos = rtps::qos::kDefault) {
     auto raw = RawPublisher::create(entry_, topic, Message::kType, qos);
     if (!raw) return Error{raw.error()};
     return Publisher<Message>(std::move(*raw));
@@ -103,13 +103,13 @@ class Node {
   // Messages that are not well-formed, or larger than their type may be (kLargest), are left out.
   template <class Message>
   Expected<std::unique_ptr<Subscription>> create_subscription(
-      std::string_view topic, const Qos& qos, std::function<void(const Message&)> callback) {
+      std::string_view topic, const rtps::Qos& qos, std::function<void(const Message&)> callback) {
     return Subscription::create(entry_, topic, Message::kType, qos,
-                                [callback = std::move(callback)](ByteView payload) {
+                                [callback = std::move(callback)](rtps::ByteView payload) {
                                   if constexpr (requires { Message::kLargest; }) {
                                     if (payload.size() > Message::kLargest) return;
                                   }
-                                  if (const auto message = decode<Message>(payload))
+                                  if (const auto message = rtps::decode<Message>(payload))
                                     callback(*message);
                                 });
   }
@@ -118,19 +118,20 @@ class Node {
   Expected<std::unique_ptr<ServiceServer>> create_service(
       std::string_view name,
       std::function<typename Service::Response(const typename Service::Request&)> handler,
-      const Qos& qos = qos::kServices) {
+      const rtps::Qos& qos = rtps::qos::kServices) {
     const auto resolved = resolve_name(name, entry_.name());
     if (!resolved) return Error{resolved.error()};
     return ServiceServer::create(entry_, {*resolved, std::string(Service::kType)}, qos,
-                                 [handler = std::move(handler)](ByteView request) {
-                                   const auto decoded = decode<typename Service::Request>(request);
-                                   return decoded ? encode(handler(*decoded)) : Bytes();
+                                 [handler = std::move(handler)](rtps::ByteView request) {
+                                   const auto decoded =
+                                       rtps::decode<typename Service::Request>(request);
+                                   return decoded ? rtps::encode(handler(*decoded)) : rtps::Bytes();
                                  });
   }
 
   template <class Service>
-  Expected<std::unique_ptr<Client<Service>>> create_client(std::string_view name,
-                                                           const Qos& qos = qos::kServices) {
+  Expected<std::unique_ptr<Client<Service>>> create_client(
+      std::string_view name, const rtps::Qos& qos = rtps::qos::kServices) {
     const auto resolved = resolve_name(name, entry_.name());
     if (!resolved) return Error{resolved.error()};
     auto raw = ServiceClient::create(entry_, {*resolved, std::string(Service::kType)}, qos);

@@ -34,8 +34,8 @@ template <class Service>
 typename Service::Response ask(LiveNode& from, const std::string& name,
                                const typename Service::Request& request) {
   const auto client = from.node->create_client<Service>(name);
-  EventLog<typename Service::Response> answers;
-  (*client)->call(request, Repeat::kUntilAnswered, kPatience, [&](const auto& answer) {
+  rtps::EventLog<typename Service::Response> answers;
+  (*client)->call(request, Repeat::kUntilAnswered, rtps::kPatience, [&](const auto& answer) {
     if (answer.response) answers.add(*answer.response);
   });
   if (!answers.wait_for_count(1)) {
@@ -116,9 +116,9 @@ TEST(Node, ServesItsParameters) {
 TEST(Node, AnnouncesChangesOfItsParameters) {
   const TestDomain domain;
   LiveNode robot(domain, {"/", "robot"}), manager(domain, {"/", "manager"});
-  EventLog<msg::ParameterEvent> events;
+  rtps::EventLog<msg::ParameterEvent> events;
   const auto subscription = manager.node->create_subscription<msg::ParameterEvent>(
-      "/parameter_events", qos::kParameterEvents,
+      "/parameter_events", rtps::qos::kParameterEvents,
       [&](const msg::ParameterEvent& event) { events.add(event); });
   ASSERT_TRUE(subscription);
   robot.context.run([&] { ASSERT_TRUE(robot.node->parameters().declare("gain", Value(1.0))); });
@@ -141,9 +141,9 @@ TEST(Node, LogsToRosout) {
   LiveNode robot(domain, {"/ns", "robot"});
   robot.node->log(Severity::kWarn, "mind the gap");
   LiveNode manager(domain, {"/", "manager"});
-  EventLog<msg::Log> logs;
+  rtps::EventLog<msg::Log> logs;
   const auto subscription = manager.node->create_subscription<msg::Log>(
-      "/rosout", qos::kRosout, [&](const msg::Log& log) { logs.add(log); });
+      "/rosout", rtps::qos::kRosout, [&](const msg::Log& log) { logs.add(log); });
   ASSERT_TRUE(subscription);
   ASSERT_TRUE(logs.wait_for_count(1));
   const msg::Log log = logs.all().front();
@@ -156,11 +156,11 @@ TEST(Node, PublishesToItsSubscribers) {
   const TestDomain domain;
   LiveNode robot(domain, {"/", "robot"}), manager(domain, {"/", "manager"});
   auto publisher = robot.node->create_publisher<msg::Float64>(
-      "~/value", {.durability = Durability::kTransientLocal});
+      "~/value", {.durability = rtps::Durability::kTransientLocal});
   ASSERT_TRUE(publisher);
-  EventLog<double> values;
+  rtps::EventLog<double> values;
   const auto subscription = manager.node->create_subscription<msg::Float64>(
-      "/robot/value", {.durability = Durability::kTransientLocal},
+      "/robot/value", {.durability = rtps::Durability::kTransientLocal},
       [&](const msg::Float64& message) { values.add(message.data); });
   ASSERT_TRUE(subscription);
   EXPECT_TRUE(publisher->publish({1.5}));
@@ -173,12 +173,12 @@ TEST(Node, ABusyExecutorDropsTheOldestSamples) {
   LiveNode robot(domain, {"/", "robot"}), manager(domain, {"/", "manager"});
   auto publisher = robot.node->create_publisher<msg::Float64>("/t");
   ASSERT_TRUE(publisher);
-  EventLog<double> values, raw;
+  rtps::EventLog<double> values, raw;
   const auto subscription = manager.node->create_subscription<msg::Float64>(
       "/t", {.depth = 2}, [&](const msg::Float64& message) { values.add(message.data); });
   const auto watcher = RawSubscription::create(
       manager.node->entry(), "/t", msg::Float64::kType, {}, PayloadUse::kWhole,
-      [&](const Sample& sample) { raw.add(decode<msg::Float64>(sample.payload)->data); });
+      [&](const Sample& sample) { raw.add(rtps::decode<msg::Float64>(sample.payload)->data); });
   ASSERT_TRUE(subscription);
   ASSERT_TRUE(watcher);
   // Both are matched when both have received something.
@@ -203,12 +203,12 @@ TEST(Node, ABusyExecutorDropsTheOldestSamples) {
 TEST(Node, SkipsMessagesThatAreNotWellFormed) {
   const TestDomain domain;
   LiveNode robot(domain, {"/", "robot"}), manager(domain, {"/", "manager"});
-  const Qos qos{.durability = Durability::kTransientLocal};
+  const rtps::Qos qos{.durability = rtps::Durability::kTransientLocal};
   const auto raw = RawPublisher::create(robot.node->entry(), "/t", msg::String::kType, qos);
   ASSERT_TRUE(raw);
-  (*raw)->publish(Bytes{0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff});
-  (*raw)->publish(encode(msg::String{"good"}));
-  EventLog<std::string> texts;
+  (*raw)->publish(rtps::Bytes{0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff});
+  (*raw)->publish(rtps::encode(msg::String{"good"}));
+  rtps::EventLog<std::string> texts;
   const auto subscription = manager.node->create_subscription<msg::String>(
       "/t", qos, [&](const msg::String& message) { texts.add(message.data); });
   ASSERT_TRUE(texts.wait_for_count(1));

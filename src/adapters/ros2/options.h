@@ -52,7 +52,7 @@ struct ParticipantOptions {
   // the same, but are kept from the middleware, which saves most of the cost of discovering a large
   // robot. Without effect in a secured domain and through servers. Called from any thread. Empty:
   // it may match all.
-  std::function<bool(std::string_view topic, EndpointRole role)> never_meets{};
+  std::function<bool(std::string_view topic, rtps::EndpointRole role)> never_meets{};
   // Not null: the participant speaks through this helper program (helper_options.h), over the robot's own middleware, and the
   // options above but for the domain are without effect. Null: over DDS.
   std::shared_ptr<const HelperOptions> helper{};

@@ -43,7 +43,7 @@ struct Robot {
   }
   template <class Done>
   bool within(Done done) {
-    for (const Time end = later(live_now(), kPatience); live_now() < end;) {
+    for (const Time end = later(live_now(), rtps::kPatience); live_now() < end;) {
       if (done()) return true;
       std::this_thread::sleep_for(20ms);
     }
@@ -55,26 +55,26 @@ struct Robot {
     const std::uint32_t first = 7400 + 250 * domain.number();
     std::set<std::uint16_t> all;
     for (int reading = 0; reading < 10; ++reading) {
-      for (const std::uint16_t port : bound_udp_ports()) {
+      for (const std::uint16_t port : rtps::bound_udp_ports()) {
         if (port >= first && port < first + 250) all.insert(port);
       }
     }
     return all;
   }
-  std::vector<Bytes> farewells() {
-    std::vector<Guid> endpoints;
-    Guid info_writer;
+  std::vector<rtps::Bytes> farewells() {
+    std::vector<rtps::Guid> endpoints;
+    rtps::Guid info_writer;
     for (const auto& each : camera.endpoints) endpoints.push_back(each.id);
     watcher.run([&] {
       for (std::uint32_t id = 1; id < 64; ++id) {
-        Guid guid = camera.info.guid;
+        rtps::Guid guid = camera.info.guid;
         guid.bytes[12] = 0, guid.bytes[13] = 0;
         guid.bytes[14] = static_cast<std::uint8_t>(id), guid.bytes[15] = 0x03;
-        const EndpointInfo* endpoint = watcher->graph().endpoint(guid);
+        const rtps::EndpointInfo* endpoint = watcher->graph().endpoint(guid);
         if (endpoint != nullptr && endpoint->topic == kDiscoveryInfoTopic) info_writer = guid;
       }
     });
-    return ros2::farewells(camera.info.guid, endpoints, info_writer,
+    return rtps::farewells(camera.info.guid, endpoints, info_writer,
                            encode_discovery_info({camera.info.guid, {}}, GidSize::kHumbleAndOlder));
   }
   bool has_lost_something() {
@@ -88,7 +88,7 @@ struct Robot {
   PeerProcess process;
   bool is_seen = false;
   Graph::ParticipantView camera;
-  std::vector<UdpAddress> to;
+  std::vector<rtps::UdpAddress> to;
 };
 
 Graph::Options proving() {
@@ -103,9 +103,9 @@ TEST(Origin, FarewellsOfAStrangerDoNotRemoveANodeWhoseProcessIsProven) {
   Robot robot(domain, watcher);
   ASSERT_TRUE(robot.is_seen);
   ASSERT_TRUE(watcher.sees_process("/camera", robot.process.pid()));
-  Origins& origins = watcher->participant().origins();
+  rtps::Origins& origins = watcher->participant().origins();
   {
-    const HostileProcess stranger(robot.farewells(), robot.to, 200ms);
+    const rtps::HostileProcess stranger(robot.farewells(), robot.to, 200ms);
     EXPECT_TRUE(robot.within([&] { return origins.dropped() > 500; }));
     EXPECT_FALSE(robot.has_lost_something());
   }
@@ -123,10 +123,10 @@ TEST(Origin, FarewellsThatBeganBeforeItWasSeenDoNotKeepAProcessFromBeingProven) 
   LiveContext listener(domain.options());
   Robot robot(domain, listener);
   ASSERT_TRUE(robot.is_seen);
-  std::vector<UdpAddress> to;  // also where nothing listens yet
+  std::vector<rtps::UdpAddress> to;  // also where nothing listens yet
   for (std::uint32_t i = 10; i < 250; ++i)
     to.push_back({{127, 0, 0, 1}, static_cast<std::uint16_t>(7400 + 250 * domain.number() + i)});
-  const HostileProcess stranger(robot.farewells(), to, 200ms);
+  const rtps::HostileProcess stranger(robot.farewells(), to, 200ms);
   LiveContext watcher(domain.options(), proving());
   ASSERT_TRUE(watcher.sees_process("/camera", robot.process.pid()));
   const std::uint64_t before = watcher->participant().origins().dropped();
@@ -151,11 +151,11 @@ TEST(Origin, AParticipantTellsOfItselfOnly) {
   const auto stranger = Participant::create(domain.options(), [](DiscoveryEvent) {});
   ASSERT_TRUE(stranger);
   ASSERT_TRUE(robot.within([&] { return robot.participants().size() == 2; }));
-  std::vector<Bytes> all = robot.farewells();
-  const GuidPrefix name = (*stranger)->guid().prefix();
-  for (Bytes& each : all) std::ranges::copy(name.bytes, each.begin() + 8);
-  const HostileProcess sends(all, robot.to, 200ms);
-  Origins& origins = watcher->participant().origins();
+  std::vector<rtps::Bytes> all = robot.farewells();
+  const rtps::GuidPrefix name = (*stranger)->guid().prefix();
+  for (rtps::Bytes& each : all) std::ranges::copy(name.bytes, each.begin() + 8);
+  const rtps::HostileProcess sends(all, robot.to, 200ms);
+  rtps::Origins& origins = watcher->participant().origins();
   EXPECT_TRUE(robot.within([&] { return origins.dropped() > 500; }));
   EXPECT_FALSE(robot.has_lost_something());
 }
@@ -169,8 +169,9 @@ TEST(Origin, AParticipantTellsOfItselfOnlyInWhateverForm) {
   const auto stranger = Participant::create(domain.options(), [](DiscoveryEvent) {});
   ASSERT_TRUE(stranger);
   ASSERT_TRUE(robot.within([&] { return robot.participants().size() == 2; }));
-  const HostileProcess sends(
-      disguised_farewells(robot.camera.info.guid, (*stranger)->guid().prefix()), robot.to, 200ms);
+  const rtps::HostileProcess sends(
+      rtps::disguised_farewells(robot.camera.info.guid, (*stranger)->guid().prefix()), robot.to,
+      200ms);
   Participant& participant = watcher->participant();
   EXPECT_TRUE(robot.within(
       [&] { return participant.origins().dropped() > 20 && participant.refused().count > 20; }));
@@ -186,8 +187,9 @@ TEST(Origin, AParticipantTellsOfItselfOnlyWithinOtherSubmessages) {
   const auto stranger = Participant::create(domain.options(), [](DiscoveryEvent) {});
   ASSERT_TRUE(stranger);
   ASSERT_TRUE(robot.within([&] { return robot.participants().size() == 2; }));
-  const HostileProcess sends(
-      smuggled_farewells(robot.camera.info.guid, (*stranger)->guid().prefix()), robot.to, 200ms);
+  const rtps::HostileProcess sends(
+      rtps::smuggled_farewells(robot.camera.info.guid, (*stranger)->guid().prefix()), robot.to,
+      200ms);
   EXPECT_TRUE(robot.within([&] { return watcher->participant().origins().dropped() > 20; }));
   EXPECT_FALSE(robot.has_lost_something());
 }
@@ -197,7 +199,7 @@ TEST(Origin, FarewellsOfAStrangerRemoveANodeWhoseProcessIsNotKnown) {
   LiveContext watcher(domain.options());
   Robot robot(domain, watcher);
   ASSERT_TRUE(robot.is_seen);
-  const HostileProcess stranger(robot.farewells(), robot.to, 200ms);
+  const rtps::HostileProcess stranger(robot.farewells(), robot.to, 200ms);
   EXPECT_TRUE(watcher.sees_node_leave("/camera"));
 }
 

@@ -28,7 +28,7 @@ class Topics {
  public:
   explicit Topics(dds::DomainParticipant& participant) : participant_(participant) {}
 
-  Expected<dds::Topic*> acquire(const std::string& name, const std::string& type, Keys keys) {
+  Expected<dds::Topic*> acquire(const std::string& name, const std::string& type, rtps::Keys keys) {
     const MutexLock lock(mutex_);
     if (const auto found = topics_.find(name); found != topics_.end()) {
       if (found->second.keys != keys)
@@ -60,14 +60,16 @@ class Topics {
   struct Entry {
     dds::Topic* topic;
     int users;
-    Keys keys;
+    rtps::Keys keys;
   };
-  static std::string of(Keys keys) { return keys == Keys::kSome ? "with keys" : "without keys"; }
+  static std::string of(rtps::Keys keys) {
+    return keys == rtps::Keys::kSome ? "with keys" : "without keys";
+  }
 
   // A type has keys or not, for all topics that it has at the same time.
-  Expected<void> know(const std::string& type, Keys keys) {
+  Expected<void> know(const std::string& type, rtps::Keys keys) {
     const dds::TypeSupport known = participant_.find_type(type);
-    if (known && known->m_isGetKeyDefined == (keys == Keys::kSome)) return {};
+    if (known && known->m_isGetKeyDefined == (keys == rtps::Keys::kSome)) return {};
     if (known && !fast_dds::ok(participant_.unregister_type(type)))
       return Error{"the type " + printable(type) + " is in use on another topic, not " + of(keys)};
     dds::TypeSupport(new fast_dds::RawType(type, keys)).register_type(&participant_);
@@ -82,11 +84,12 @@ class Topics {
 // The writers that one reader receives, which the filter must know.
 class HeardWriters {
  public:
-  HeardWriters(DatagramFilter& filter, const Qos& qos, std::function<void()> on_unheard,
-               DatagramFilter::OnWhole on_whole)
+  HeardWriters(rtps::DatagramFilter& filter, const rtps::Qos& qos, std::function<void()> on_unheard,
+               rtps::DatagramFilter::OnWhole on_whole)
       : filter_(filter),
-        how_(qos.reliability == Reliability::kReliable ? DatagramFilter::Reading::kReliable
-                                                       : DatagramFilter::Reading::kBestEffort),
+        how_(qos.reliability == rtps::Reliability::kReliable
+                 ? rtps::DatagramFilter::Reading::kReliable
+                 : rtps::DatagramFilter::Reading::kBestEffort),
         on_unheard_(on_unheard
                         ? std::make_shared<const std::function<void()>>(
                               [gate = gate_, call = std::move(on_unheard)] { gate->pass(call); })
@@ -101,7 +104,7 @@ class HeardWriters {
   // Matches of two threads at once are reported as one (Fast DDS 2.9,
   // DataReaderImpl::update_subscription_matched_status): then it is unclear which writers are
   // matched. `reader` is always the same.
-  void note(const Guid& writer, const Guid& reader, int change) {
+  void note(const rtps::Guid& writer, const rtps::Guid& reader, int change) {
     const MutexLock lock(mutex_);
     reader_ = reader;
     if (change == 1) {
@@ -114,11 +117,11 @@ class HeardWriters {
   }
   void end() {
     const MutexLock lock(mutex_);
-    for (const Guid& writer : writers_) filter_.end_hearing(writer, reader_);
+    for (const rtps::Guid& writer : writers_) filter_.end_hearing(writer, reader_);
     writers_.clear();
   }
   // A writer whose sample is delivered is matched, whether that was reported or not.
-  void delivered(const Guid& writer, const Guid& reader) {
+  void delivered(const rtps::Guid& writer, const rtps::Guid& reader) {
     {
       const MutexLock lock(mutex_);
       reader_ = reader;
@@ -128,20 +131,20 @@ class HeardWriters {
   }
 
  private:
-  void begin(const Guid& writer) CULPRIT_REQUIRES(mutex_) {
+  void begin(const rtps::Guid& writer) CULPRIT_REQUIRES(mutex_) {
     if (writers_.insert(writer).second)
       filter_.begin_hearing(writer, reader_, how_, on_unheard_, on_whole_);
   }
 
-  DatagramFilter& filter_;
-  const DatagramFilter::Reading how_;
+  rtps::DatagramFilter& filter_;
+  const rtps::DatagramFilter::Reading how_;
   const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
-  const DatagramFilter::OnUnheard on_unheard_;
-  const DatagramFilter::OnWhole on_whole_;
+  const rtps::DatagramFilter::OnUnheard on_unheard_;
+  const rtps::DatagramFilter::OnWhole on_whole_;
   Mutex mutex_;
-  Guid reader_ CULPRIT_GUARDED_BY(mutex_);
-  std::set<Guid> writers_ CULPRIT_GUARDED_BY(mutex_);
-  std::optional<DatagramFilter::Change> unclear_ CULPRIT_GUARDED_BY(mutex_);
+  rtps::Guid reader_ CULPRIT_GUARDED_BY(mutex_);
+  std::set<rtps::Guid> writers_ CULPRIT_GUARDED_BY(mutex_);
+  std::optional<rtps::DatagramFilter::Change> unclear_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 // The likely reason why the middleware refused a reader or writer.
@@ -160,7 +163,7 @@ Match match_of(const Status& status) {
 
 class DdsReader final : public Reader::Impl, public dds::DataReaderListener {
  public:
-  DdsReader(dds::Subscriber& subscriber, Topics& topics, DatagramFilter& filter,
+  DdsReader(dds::Subscriber& subscriber, Topics& topics, rtps::DatagramFilter& filter,
             std::uint16_t patient_port, ReaderOptions options, SampleCallback on_sample)
       : subscriber_(subscriber),
         topics_(topics),
@@ -178,7 +181,7 @@ class DdsReader final : public Reader::Impl, public dds::DataReaderListener {
     if (!topic) return Error{topic.error()};
     has_topic_ = true;
     // With the listener from the start: known writers match, and may send, before this returns.
-    const DatagramFilter::Change change(filter_);
+    const rtps::DatagramFilter::Change change(filter_);
     reader_ = subscriber_.create_datareader(
         *topic, fast_dds::reader_qos(options_.qos, options_.user_data, port_), this,
         dds::StatusMask::data_available() << dds::StatusMask::subscription_matched());
@@ -192,7 +195,7 @@ class DdsReader final : public Reader::Impl, public dds::DataReaderListener {
   ~DdsReader() override {
     gate_->close();
     if (reader_ != nullptr) {
-      const DatagramFilter::Change change(filter_);
+      const rtps::DatagramFilter::Change change(filter_);
       reader_->set_listener(nullptr);
       subscriber_.delete_datareader(reader_);
       heard_.end();
@@ -211,30 +214,31 @@ class DdsReader final : public Reader::Impl, public dds::DataReaderListener {
 
   void on_subscription_matched(dds::DataReader* reader,
                                const dds::SubscriptionMatchedStatus& status) noexcept override {
-    const Guid writer =
-        fast_dds::to_guid(fast_dds::rtps::iHandle2GUID(status.last_publication_handle));
+    const rtps::Guid writer =
+        fast_dds::to_guid(fast_dds::fastrtps::iHandle2GUID(status.last_publication_handle));
     heard_.note(writer, fast_dds::to_guid(reader->guid()), status.current_count_change);
     if (!options_.on_match) return;
     gate_->pass([&] { options_.on_match(writer, match_of(status)); });
   }
 
-  const Guid& guid() const override { return guid_; }
+  const rtps::Guid& guid() const override { return guid_; }
 
  private:
   // If the reader has time, samples bypass the middleware, which would do nothing for them: it
   // would be most of the cost of receiving them.
-  DatagramFilter::OnWhole on_whole(const ReaderOptions& options) {
-    const Qos& qos = options.qos;
-    const bool is_plain = qos.reliability == Reliability::kBestEffort && qos.keys == Keys::kNone &&
-                          qos.ownership == Ownership::kShared && qos.liveliness_lease == kInfinite;
+  rtps::DatagramFilter::OnWhole on_whole(const ReaderOptions& options) {
+    const rtps::Qos& qos = options.qos;
+    const bool is_plain =
+        qos.reliability == rtps::Reliability::kBestEffort && qos.keys == rtps::Keys::kNone &&
+        qos.ownership == rtps::Ownership::kShared && qos.liveliness_lease == rtps::kInfinite;
     if (!has_time(options.payload) || !is_plain) return nullptr;
-    return std::make_shared<const std::function<void(const DatagramFilter::Whole&)>>(
-        [this, gate = gate_](const DatagramFilter::Whole& sample) {
+    return std::make_shared<const std::function<void(const rtps::DatagramFilter::Whole&)>>(
+        [this, gate = gate_](const rtps::DatagramFilter::Whole& sample) {
           gate->pass([&] { hand(sample); });
         });
   }
 
-  void hand(const DatagramFilter::Whole& sample) {
+  void hand(const rtps::DatagramFilter::Whole& sample) {
     on_sample_({.payload = sample.payload.first(given_of(options_.payload, sample.payload.size())),
                 .size = sample.payload.size(),
                 .sent = sample.sent,
@@ -243,10 +247,11 @@ class DdsReader final : public Reader::Impl, public dds::DataReaderListener {
                 .related = {}});
   }
 
-  void deliver(const dds::SampleInfo& info, const Guid& guid) {
+  void deliver(const dds::SampleInfo& info, const rtps::Guid& guid) {
     heard_.delivered(fast_dds::to_identity(info.sample_identity).writer, guid);
-    on_sample_({.payload = options_.payload == PayloadUse::kHeader ? ByteView()
-                                                                   : ByteView(incoming_.bytes),
+    on_sample_({.payload = options_.payload == PayloadUse::kHeader
+                               ? rtps::ByteView()
+                               : rtps::ByteView(incoming_.bytes),
                 .size = incoming_.size,
                 .sent = fast_dds::to_time(info.source_timestamp),
                 .received = fast_dds::to_time(info.reception_timestamp),
@@ -256,7 +261,7 @@ class DdsReader final : public Reader::Impl, public dds::DataReaderListener {
 
   dds::Subscriber& subscriber_;
   Topics& topics_;
-  DatagramFilter& filter_;
+  rtps::DatagramFilter& filter_;
   const std::uint16_t port_;
   const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
   HeardWriters heard_;  // outlives the middleware's reader
@@ -265,12 +270,12 @@ class DdsReader final : public Reader::Impl, public dds::DataReaderListener {
   fast_dds::Incoming incoming_;  // inside the gate; keeps its capacity from sample to sample
   bool has_topic_ = false;
   dds::DataReader* reader_ = nullptr;
-  Guid guid_;
+  rtps::Guid guid_;
 };
 
 Reader::Reader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Reader::~Reader() = default;
-const Guid& Reader::guid() const { return impl_->guid(); }
+const rtps::Guid& Reader::guid() const { return impl_->guid(); }
 
 class DdsWriter final : public Writer::Impl, public dds::DataWriterListener {
  public:
@@ -278,7 +283,7 @@ class DdsWriter final : public Writer::Impl, public dds::DataWriterListener {
             WriterOptions options)
       : publisher_(publisher),
         topics_(topics),
-        port_(options.haste == Haste::kSoon ? patient_port : std::uint16_t{0}),
+        port_(options.haste == rtps::Haste::kSoon ? patient_port : std::uint16_t{0}),
         options_(std::move(options)) {}
 
   Expected<void> open(const std::string& likely_refusal) {
@@ -307,12 +312,13 @@ class DdsWriter final : public Writer::Impl, public dds::DataWriterListener {
   void on_publication_matched(dds::DataWriter*,
                               const dds::PublicationMatchedStatus& status) noexcept override {
     if (!options_.on_match) return;
-    const Guid reader =
-        fast_dds::to_guid(fast_dds::rtps::iHandle2GUID(status.last_subscription_handle));
+    const rtps::Guid reader =
+        fast_dds::to_guid(fast_dds::fastrtps::iHandle2GUID(status.last_subscription_handle));
     gate_.pass([&] { options_.on_match(reader, match_of(status)); });
   }
 
-  std::optional<std::int64_t> write(ByteView payload, const SampleIdentity& related) override {
+  std::optional<std::int64_t> write(rtps::ByteView payload,
+                                    const rtps::SampleIdentity& related) override {
     return fast_dds::write(*writer_, payload, related);
   }
 
@@ -320,7 +326,7 @@ class DdsWriter final : public Writer::Impl, public dds::DataWriterListener {
 
   bool is_acknowledged() const override { return fast_dds::is_acknowledged(*writer_); }
 
-  const Guid& guid() const override { return guid_; }
+  const rtps::Guid& guid() const override { return guid_; }
 
  private:
   dds::Publisher& publisher_;
@@ -330,13 +336,14 @@ class DdsWriter final : public Writer::Impl, public dds::DataWriterListener {
   Gate gate_;
   bool has_topic_ = false;
   dds::DataWriter* writer_ = nullptr;
-  Guid guid_;
+  rtps::Guid guid_;
 };
 
 Writer::Writer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Writer::~Writer() = default;
-const Guid& Writer::guid() const { return impl_->guid(); }
-std::optional<std::int64_t> Writer::write(ByteView payload, const SampleIdentity& related) {
+const rtps::Guid& Writer::guid() const { return impl_->guid(); }
+std::optional<std::int64_t> Writer::write(rtps::ByteView payload,
+                                          const rtps::SampleIdentity& related) {
   return impl_->write(payload, related);
 }
 void Writer::forget_unacknowledged() { impl_->forget_unacknowledged(); }
@@ -408,7 +415,7 @@ class DdsParticipant final : public Participant::Impl {
 
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options,
                                                   SampleCallback on_sample) override {
-    if (never_meets_ && never_meets_(options.topic, EndpointRole::kWriter))
+    if (never_meets_ && never_meets_(options.topic, rtps::EndpointRole::kWriter))
       return Error{"this participant was to read nothing of " + printable(options.topic)};
     auto reader = std::make_unique<DdsReader>(*subscriber_, *topics_, *reception_.filter,
                                               *reception_.patient_port, std::move(options),
@@ -418,7 +425,7 @@ class DdsParticipant final : public Participant::Impl {
   }
 
   Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options) override {
-    if (never_meets_ && never_meets_(options.topic, EndpointRole::kReader))
+    if (never_meets_ && never_meets_(options.topic, rtps::EndpointRole::kReader))
       return Error{"this participant was to write nothing to " + printable(options.topic)};
     auto writer = std::make_unique<DdsWriter>(*publisher_, *topics_, *reception_.patient_port,
                                               std::move(options));
@@ -435,17 +442,17 @@ class DdsParticipant final : public Participant::Impl {
     reception_.thread->on_round(std::move(on_round));
   }
 
-  const Guid& guid() const override { return guid_; }
-  DatagramSources::Origin origin_of(const GuidPrefix& participant) const override {
+  const rtps::Guid& guid() const override { return guid_; }
+  rtps::DatagramSources::Origin origin_of(const rtps::GuidPrefix& participant) const override {
     return reception_.sources->of(participant);
   }
-  void prove(const GuidPrefix& participant, int pid) override {
+  void prove(const rtps::GuidPrefix& participant, int pid) override {
     // Datagrams from elsewhere in its name prove nothing about it.
     if (!origins().prove(participant, pid, origin_of(participant).addresses))
       reception_.sources->forget(participant);
   }
-  Origins& origins() override { return *reception_.origins; }
-  Time heard_last(const GuidPrefix& participant) const override {
+  rtps::Origins& origins() override { return *reception_.origins; }
+  Time heard_last(const rtps::GuidPrefix& participant) const override {
     return reception_.sources->last_of(participant);
   }
   Time own_came_through() const override { return reception_.sources->own_came_through(); }
@@ -454,7 +461,7 @@ class DdsParticipant final : public Participant::Impl {
         [&](std::span<const int> sockets) { watch_.look(sockets, now); });
   }
   Time receivers_attended() const override { return watch_.attended(); }
-  DatagramFilter::Refused refused() const override { return reception_.filter->refused(); }
+  rtps::DatagramFilter::Refused refused() const override { return reception_.filter->refused(); }
   std::uint64_t dropped_here() const override { return reception_.thread->dropped(); }
 
  private:
@@ -483,17 +490,17 @@ class DdsParticipant final : public Participant::Impl {
 
   void discover_past_middleware() {
     reception_.filter->discover(
-        guid_.prefix(), never_meets_, [this, gate = gate_](const EndpointNews& news) {
+        guid_.prefix(), never_meets_, [this, gate = gate_](const rtps::EndpointNews& news) {
           gate->pass([&] { std::visit([this](const auto& each) { on_discovery_(each); }, news); });
         });
   }
 
   const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
   const DiscoveryCallback on_discovery_;
-  std::map<Guid, ParticipantInfo> told_;  // of those that are there; inside the gate
-  std::function<bool(std::string_view, EndpointRole)> never_meets_;
-  const fast_dds::Reception reception_;
-  ReceiveWatch watch_;
+  std::map<rtps::Guid, ParticipantInfo> told_;  // of those that are there; inside the gate
+  std::function<bool(std::string_view, rtps::EndpointRole)> never_meets_;
+  const rtps::Reception reception_;
+  rtps::ReceiveWatch watch_;
   fast_dds::DiscoveryListener listener_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
@@ -501,7 +508,7 @@ class DdsParticipant final : public Participant::Impl {
   std::optional<Topics> topics_;
   std::string likely_refusal_;
   bool is_secured_ = false;
-  Guid guid_;
+  rtps::Guid guid_;
 };
 
 Participant::Hold::Hold(Participant& participant) : participant_(*participant.impl_) {
@@ -517,20 +524,22 @@ Participant::Hurry::~Hurry() { participant_.end_hurry(); }
 Participant::Participant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Participant::~Participant() = default;
 void Participant::leave() { impl_->leave(); }
-const Guid& Participant::guid() const { return impl_->guid(); }
+const rtps::Guid& Participant::guid() const { return impl_->guid(); }
 void Participant::on_round(std::function<void()> on_round) { impl_->on_round(std::move(on_round)); }
-DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
+rtps::DatagramSources::Origin Participant::origin_of(const rtps::GuidPrefix& participant) const {
   return impl_->origin_of(participant);
 }
-void Participant::prove(const GuidPrefix& participant, int pid) { impl_->prove(participant, pid); }
-Origins& Participant::origins() { return impl_->origins(); }
-Time Participant::heard_last(const GuidPrefix& participant) const {
+void Participant::prove(const rtps::GuidPrefix& participant, int pid) {
+  impl_->prove(participant, pid);
+}
+rtps::Origins& Participant::origins() { return impl_->origins(); }
+Time Participant::heard_last(const rtps::GuidPrefix& participant) const {
   return impl_->heard_last(participant);
 }
 Time Participant::own_came_through() const { return impl_->own_came_through(); }
 void Participant::look_at_receivers(Time now) { impl_->look_at_receivers(now); }
 Time Participant::receivers_attended() const { return impl_->receivers_attended(); }
-DatagramFilter::Refused Participant::refused() const { return impl_->refused(); }
+rtps::DatagramFilter::Refused Participant::refused() const { return impl_->refused(); }
 std::uint64_t Participant::dropped_here() const { return impl_->dropped_here(); }
 
 Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,

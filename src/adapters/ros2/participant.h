@@ -33,53 +33,57 @@
 #include "rtps/qos.h"
 #include "rtps/system_time.h"
 
-namespace culprit::ros2 {
-
+namespace culprit::rtps {
 class Origins;
+}  // namespace culprit::rtps
+
+namespace culprit::ros2 {
 
 // By the vendor id that the participant announces (RTPS 2.3 §9.3.1.3).
 enum class Vendor : std::uint8_t { kFastDds, kCyclone, kOther };
 
 // The announcement of a remote participant. Strings are as sent, cut at 1024 bytes.
 struct ParticipantInfo {
-  Guid guid;
+  rtps::Guid guid;
   Vendor vendor = Vendor::kOther;
   std::string host{};  // its machine; empty if not announced
   int pid = 0;         // its process, by its own PID namespace; 0 if not announced
-  std::vector<UdpAddress> metatraffic{};  // where it listens for discovery
-  bool shares_memory = false;             // it listens in shared memory, too (Fast DDS)
-  bool is_secured = false;                // it has an identity, signed by somebody
+  std::vector<rtps::UdpAddress> metatraffic{};  // where it listens for discovery
+  bool shares_memory = false;                   // it listens in shared memory, too (Fast DDS)
+  bool is_secured = false;                      // it has an identity, signed by somebody
   // The full names of its nodes, if they are known with its announcement (helper_graph.h); over DDS they are not.
   std::vector<std::string> nodes{};
   // Not its word: where its datagrams came from. Filled in when its process is looked for.
-  DatagramSources::Origin origin{};
+  rtps::DatagramSources::Origin origin{};
   bool operator==(const ParticipantInfo&) const = default;
 };
 
 struct ParticipantGone {
-  Guid guid;
+  rtps::Guid guid;
   bool was_lost = false;  // without a goodbye: its lease ran out
 };
 
 // Also sent again when what is known changes, and only then.
-using DiscoveryEvent = std::variant<ParticipantInfo, EndpointInfo, ParticipantGone, EndpointGone>;
+using DiscoveryEvent =
+    std::variant<ParticipantInfo, rtps::EndpointInfo, ParticipantGone, rtps::EndpointGone>;
 using DiscoveryCallback = std::function<void(DiscoveryEvent)>;
 
 // A sample as it came. `payload` is invalid when the callback returns.
 struct Sample {
-  ByteView
-      payload;  // with its encapsulation; empty for a reader of headers, cut for one of beginnings
-  std::size_t size = 0;  // of the payload, in bytes, also where it was not copied
-  SystemTime sent;       // by the writer's clock
-  SystemTime received;
-  SampleIdentity
-      identity;  // differences of its sequence number count what was written, whatever was lost
-  SampleIdentity related;  // which request a reply answers, or where the reply to a request goes
+  // With its encapsulation; empty for a reader of headers, cut for one of beginnings.
+  rtps::ByteView payload;
+  std::size_t size = 0;   // of the payload, in bytes, also where it was not copied
+  rtps::SystemTime sent;  // by the writer's clock
+  rtps::SystemTime received;
+  // Differences of its sequence number count what was written, whatever was lost.
+  rtps::SampleIdentity identity;
+  // The request that a reply answers, or the place where the reply to a request goes.
+  rtps::SampleIdentity related;
 };
 using SampleCallback = std::function<void(const Sample&)>;
 
 enum class Match : std::uint8_t { kMade, kLost };
-using MatchCallback = std::function<void(const Guid& remote, Match)>;
+using MatchCallback = std::function<void(const rtps::Guid& remote, Match)>;
 
 // kHeader: for topics whose rate matters and whose size hurts; no payload is copied. A reader that
 // does not read payloads has time: samples may come by ReceiveThread::kSoon late. Waking a thread
@@ -112,7 +116,7 @@ constexpr std::size_t given_of(PayloadUse use, std::size_t size) {
 struct ReaderOptions {
   std::string topic;  // DDS names
   std::string type;
-  Qos qos;
+  rtps::Qos qos;
   PayloadUse payload = PayloadUse::kWhole;
   std::string user_data;
   MatchCallback on_match;  // may be empty
@@ -125,12 +129,12 @@ struct ReaderOptions {
 struct WriterOptions {
   std::string topic;
   std::string type;
-  Qos qos;
+  rtps::Qos qos;
   std::string user_data;
   MatchCallback on_match;
   // kSoon: acknowledgements may come as late as samples of readers that have time, and so what was lost is sent
   // again later.
-  Haste haste = Haste::kNow;
+  rtps::Haste haste = rtps::Haste::kNow;
 };
 
 class Reader {
@@ -139,7 +143,7 @@ class Reader {
   explicit Reader(std::unique_ptr<Impl> impl);
   ~Reader();
 
-  const Guid& guid() const;
+  const rtps::Guid& guid() const;
 
  private:
   std::unique_ptr<Impl> impl_;
@@ -151,11 +155,12 @@ class Writer {
   explicit Writer(std::unique_ptr<Impl> impl);
   ~Writer();
 
-  const Guid& guid() const;
+  const rtps::Guid& guid() const;
 
   // The sequence number of the sample, or nothing when the middleware refused it. `payload` starts
   // with its encapsulation. The sample may have been answered when this returns.
-  std::optional<std::int64_t> write(ByteView payload, const SampleIdentity& related = {});
+  std::optional<std::int64_t> write(rtps::ByteView payload,
+                                    const rtps::SampleIdentity& related = {});
 
   // Gives up on what is not acknowledged yet: it is not sent again.
   void forget_unacknowledged();
@@ -176,7 +181,7 @@ class Participant {
   explicit Participant(std::unique_ptr<Impl> impl);
   ~Participant();
 
-  const Guid& guid() const;
+  const rtps::Guid& guid() const;
 
   // Sends nothing more but the goodbye at its end, which announces the end of all its readers and
   // writers at once: for a participant with many endpoints that ends. @pre nothing more is created
@@ -216,12 +221,12 @@ class Participant {
   void on_round(std::function<void()> on_round);
 
   // Where the datagrams of another participant came from so far.
-  DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
+  rtps::DatagramSources::Origin origin_of(const rtps::GuidPrefix& participant) const;
   // Its process is this one, on this machine: from now on only what comes from that process counts as its (Origins).
-  void prove(const GuidPrefix& participant, int pid);
-  Origins& origins();
+  void prove(const rtps::GuidPrefix& participant, int pid);
+  rtps::Origins& origins();
   // When its last one came; kLongAgo: it is not there.
-  Time heard_last(const GuidPrefix& participant) const;
+  Time heard_last(const rtps::GuidPrefix& participant) const;
   // Since when no own datagram came through one of its ports (DatagramSources). Every second
   // something should.
   Time own_came_through() const;
@@ -229,7 +234,7 @@ class Participant {
   void look_at_receivers(Time now);
   Time receivers_attended() const;
   // The datagrams that were kept from the middleware.
-  DatagramFilter::Refused refused() const;
+  rtps::DatagramFilter::Refused refused() const;
   // Datagrams that our own full sockets dropped so far (ReceiveThread). Within the callback of a sample: before it.
   std::uint64_t dropped_here() const;
 

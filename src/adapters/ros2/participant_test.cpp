@@ -24,15 +24,15 @@ namespace {
 using ::testing::HasSubstr;
 
 struct Received {
-  Bytes payload;
+  rtps::Bytes payload;
   std::size_t size;
-  SystemTime sent;
-  SystemTime received;
-  SampleIdentity identity;
-  SampleIdentity related;
+  rtps::SystemTime sent;
+  rtps::SystemTime received;
+  rtps::SampleIdentity identity;
+  rtps::SampleIdentity related;
 };
 
-SampleCallback into(EventLog<Received>& log) {
+SampleCallback into(rtps::EventLog<Received>& log) {
   return [&log](const Sample& sample) {
     log.add({{sample.payload.begin(), sample.payload.end()},
              sample.size,
@@ -44,19 +44,20 @@ SampleCallback into(EventLog<Received>& log) {
 }
 
 struct MatchEvent {
-  Guid remote;
+  rtps::Guid remote;
   Match match;
 };
 
 // A writer and a reader in two participants, matched in both directions.
 struct Pair {
-  explicit Pair(const Qos& qos = {}, PayloadUse use = PayloadUse::kWhole) {
-    auto w = sender->create_writer({"t", "T", qos, "w", [this](const Guid& remote, Match match) {
-                                      writer_matches.add({remote, match});
-                                    }});
+  explicit Pair(const rtps::Qos& qos = {}, PayloadUse use = PayloadUse::kWhole) {
+    auto w =
+        sender->create_writer({"t", "T", qos, "w", [this](const rtps::Guid& remote, Match match) {
+                                 writer_matches.add({remote, match});
+                               }});
     writer = std::move(*w);
     auto r = receiver->create_reader({"t", "T", qos, use, "r",
-                                      [this](const Guid& remote, Match match) {
+                                      [this](const rtps::Guid& remote, Match match) {
                                         reader_matches.add({remote, match});
                                       }},
                                      into(received));
@@ -65,8 +66,8 @@ struct Pair {
     EXPECT_TRUE(reader_matches.wait_for_count(1));
   }
 
-  EventLog<Received> received;
-  EventLog<MatchEvent> writer_matches, reader_matches;
+  rtps::EventLog<Received> received;
+  rtps::EventLog<MatchEvent> writer_matches, reader_matches;
   TestDomain domain;
   std::unique_ptr<Participant> sender = join(domain);
   std::unique_ptr<Participant> receiver = join(domain);
@@ -82,29 +83,29 @@ TEST(Participant, BytesArriveAsTheyWereWritten) {
   const Received sample = pair.received.all().front();
   EXPECT_EQ(sample.payload, kSmallPayload);
   EXPECT_EQ(sample.size, kSmallPayload.size());
-  EXPECT_EQ(sample.identity, (SampleIdentity{pair.writer->guid(), *sequence}));
-  EXPECT_EQ(sample.related, SampleIdentity{});
+  EXPECT_EQ(sample.identity, (rtps::SampleIdentity{pair.writer->guid(), *sequence}));
+  EXPECT_EQ(sample.related, rtps::SampleIdentity{});
   EXPECT_LE(sample.sent, sample.received);
   const auto now =
       std::chrono::time_point_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now());
-  EXPECT_LT(now - sample.sent, kPatience);
+  EXPECT_LT(now - sample.sent, rtps::kPatience);
 }
 
 TEST(Participant, ALeavingParticipantSaysOneGoodbyeForAllThatItHad) {
   const TestDomain domain;
-  EventLog<Guid> gone;
+  rtps::EventLog<rtps::Guid> gone;
   const auto stays = join(domain, [&gone](DiscoveryEvent event) {
     if (const auto* participant = std::get_if<ParticipantGone>(&event)) {
       EXPECT_FALSE(participant->was_lost);
       gone.add(participant->guid);
     }
-    if (const auto* endpoint = std::get_if<EndpointGone>(&event)) gone.add(endpoint->guid);
+    if (const auto* endpoint = std::get_if<rtps::EndpointGone>(&event)) gone.add(endpoint->guid);
   });
   auto leaves = join(domain);
-  const Guid participant = leaves->guid();
-  EventLog<MatchEvent> matches;
+  const rtps::Guid participant = leaves->guid();
+  rtps::EventLog<MatchEvent> matches;
   const auto writer =
-      stays->create_writer({"t", "T", {}, "", [&matches](const Guid& remote, Match match) {
+      stays->create_writer({"t", "T", {}, "", [&matches](const rtps::Guid& remote, Match match) {
                               matches.add({remote, match});
                             }});
   auto reader =
@@ -116,12 +117,12 @@ TEST(Participant, ALeavingParticipantSaysOneGoodbyeForAllThatItHad) {
   leaves.reset();
   ASSERT_TRUE(matches.wait_for_count(2));
   EXPECT_EQ(matches.all().back().match, Match::kLost);
-  ASSERT_TRUE(gone.wait_for_one([&](const Guid& each) { return each == participant; }));
+  ASSERT_TRUE(gone.wait_for_one([&](const rtps::Guid& each) { return each == participant; }));
 }
 
 TEST(Participant, TheRelatedIdentityTravelsAlong) {
   Pair pair;
-  const SampleIdentity related{pair.reader->guid(), (std::int64_t{5} << 32) | 7};
+  const rtps::SampleIdentity related{pair.reader->guid(), (std::int64_t{5} << 32) | 7};
   pair.writer->write(kSmallPayload, related);
   ASSERT_TRUE(pair.received.wait_for_count(1));
   EXPECT_EQ(pair.received.all().front().related, related);
@@ -145,7 +146,7 @@ TEST(Participant, AReaderOfHeadersCopiesNoPayload) {
 
 TEST(Participant, AReaderOfBeginningsCopiesOnlyThose) {
   Pair pair({}, PayloadUse::kBeginning);
-  Bytes large(5000, 7);
+  rtps::Bytes large(5000, 7);
   large[0] = 0;
   pair.writer->write(large);
   pair.writer->write(kSmallPayload);
@@ -158,13 +159,13 @@ TEST(Participant, AReaderOfBeginningsCopiesOnlyThose) {
 
 // Most of it comes past the middleware, and as it would come through it.
 void hears_all_in_its_order(PayloadUse use, std::size_t given_of_large) {
-  Pair pair({.reliability = Reliability::kBestEffort}, use);
-  Bytes large(5000, 7);
+  Pair pair({.reliability = rtps::Reliability::kBestEffort}, use);
+  rtps::Bytes large(5000, 7);
   large[0] = 0;
-  const SystemTime before = std::chrono::system_clock::now();
+  const rtps::SystemTime before = std::chrono::system_clock::now();
   for (int i = 0; i < 50; ++i) pair.writer->write(i % 2 == 0 ? large : kSmallPayload);
   ASSERT_TRUE(pair.received.wait_for_count(50));
-  const SystemTime after = std::chrono::system_clock::now();
+  const rtps::SystemTime after = std::chrono::system_clock::now();
   large.resize(given_of_large);
   const auto all = pair.received.all();
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -185,8 +186,8 @@ TEST(Participant, AReaderWithTimeReceivesAllThatIsWrittenInItsOrder) {
 }
 
 TEST(Participant, AReaderWithTimeReceivesFragments) {
-  Pair pair({.reliability = Reliability::kBestEffort}, PayloadUse::kWholeLater);
-  Bytes large(100'000, 7);
+  Pair pair({.reliability = rtps::Reliability::kBestEffort}, PayloadUse::kWholeLater);
+  rtps::Bytes large(100'000, 7);
   large[0] = 0;
   pair.writer->write(large);
   ASSERT_TRUE(pair.received.wait_for_count(1));
@@ -195,9 +196,9 @@ TEST(Participant, AReaderWithTimeReceivesFragments) {
 
 TEST(Participant, WhatIsCreatedWhileItIsHeldIsDiscoveredAllTheSame) {
   const TestDomain domain;
-  EventLog<EndpointInfo> endpoints;
+  rtps::EventLog<rtps::EndpointInfo> endpoints;
   const auto watcher = join(domain, [&](const DiscoveryEvent& event) {
-    if (const auto* endpoint = std::get_if<EndpointInfo>(&event)) endpoints.add(*endpoint);
+    if (const auto* endpoint = std::get_if<rtps::EndpointInfo>(&event)) endpoints.add(*endpoint);
   });
   const auto sender = join(domain);
   auto first = sender->create_writer({"first", "T", {}, "", {}});
@@ -217,7 +218,7 @@ TEST(Participant, WhatIsCreatedWhileItIsHeldIsDiscoveredAllTheSame) {
 
 TEST(Participant, LargePayloadsArriveWhole) {
   Pair pair;
-  Bytes large(4'000'000);
+  rtps::Bytes large(4'000'000);
   std::iota(large.begin(), large.end(), std::uint8_t{0});
   large[0] = 0, large[1] = 1;
   pair.writer->write(large);
@@ -229,18 +230,19 @@ TEST(Participant, LargePayloadsArriveWhole) {
 
 TEST(Participant, APayloadWithoutEncapsulationIsRefused) {
   Pair pair;
-  EXPECT_FALSE(pair.writer->write(Bytes{0, 1}));
+  EXPECT_FALSE(pair.writer->write(rtps::Bytes{0, 1}));
 }
 
 TEST(Participant, ABestEffortReaderMatchesAReliableWriter) {
   Pair pair;
-  EventLog<Received> received;
-  EventLog<MatchEvent> matches;
-  auto watcher = pair.receiver->create_reader({"t", "T", qos::kSensorData, PayloadUse::kWhole, "",
-                                               [&](const Guid& remote, Match match) {
-                                                 matches.add({remote, match});
-                                               }},
-                                              into(received));
+  rtps::EventLog<Received> received;
+  rtps::EventLog<MatchEvent> matches;
+  auto watcher =
+      pair.receiver->create_reader({"t", "T", rtps::qos::kSensorData, PayloadUse::kWhole, "",
+                                    [&](const rtps::Guid& remote, Match match) {
+                                      matches.add({remote, match});
+                                    }},
+                                   into(received));
   ASSERT_TRUE(watcher);
   ASSERT_TRUE(matches.wait_for_count(1));
   ASSERT_TRUE(pair.writer_matches.wait_for_count(2));
@@ -251,20 +253,20 @@ TEST(Participant, ABestEffortReaderMatchesAReliableWriter) {
 TEST(Participant, TransientLocalSamplesReachLateReaders) {
   const TestDomain domain;
   const auto sender = join(domain);
-  const auto writer = sender->create_writer({"t", "T", qos::kDiscoveryInfoWriter, "", {}});
+  const auto writer = sender->create_writer({"t", "T", rtps::qos::kDiscoveryInfoWriter, "", {}});
   ASSERT_TRUE(writer);
   (*writer)->write(kSmallPayload);
   const auto receiver = join(domain);
-  EventLog<Received> received;
+  rtps::EventLog<Received> received;
   const auto reader = receiver->create_reader(
-      {"t", "T", qos::kDiscoveryInfoReader, PayloadUse::kWhole, "", {}}, into(received));
+      {"t", "T", rtps::qos::kDiscoveryInfoReader, PayloadUse::kWhole, "", {}}, into(received));
   ASSERT_TRUE(reader);
   EXPECT_TRUE(received.wait_for_count(1));
 }
 
 // A starting robot has hundreds of readers and writers that repeat themselves at once.
 TEST(Participant, ItsEndpointsRepeatThemselvesAtMostFifteenTimesASecond) {
-  const Qos qos;
+  const rtps::Qos qos;
   const auto reader = fast_dds::reader_qos(qos, "", 0).reliable_reader_qos().times;
   EXPECT_GE(reader.initialAcknackDelay.to_ns(), 1'000'000'000 / 15);
   const auto writer = fast_dds::writer_qos(qos, "").reliable_writer_qos().times;
@@ -273,7 +275,7 @@ TEST(Participant, ItsEndpointsRepeatThemselvesAtMostFifteenTimesASecond) {
 
 // Else the reply may be announced by the same heartbeat as its greeting, and Cyclone drops both.
 TEST(Participant, ItsHeartbeatsAskFiveTimesWhetherAGreetingCame) {
-  const auto writer = fast_dds::writer_qos(qos::kServices, "").reliable_writer_qos().times;
+  const auto writer = fast_dds::writer_qos(rtps::qos::kServices, "").reliable_writer_qos().times;
   EXPECT_LE(5 * writer.heartbeatPeriod.to_ns(),
             std::chrono::nanoseconds(ServiceServer::kLongestGreeting).count());
 }
@@ -298,7 +300,7 @@ TEST(Participant, ATopicHasOneType) {
 }
 
 TEST(Participant, AReaderWithKeysHearsAllSamplesOfAWriterWithKeys) {
-  Pair pair({.keys = Keys::kSome});
+  Pair pair({.keys = rtps::Keys::kSome});
   EXPECT_TRUE(pair.writer->guid().has_keys());
   EXPECT_TRUE(pair.reader->guid().has_keys() && pair.reader->guid().is_reader());
   for (int i = 0; i < 5; ++i) pair.writer->write(kSmallPayload);
@@ -309,7 +311,7 @@ TEST(Participant, AReaderWithKeysHearsAllSamplesOfAWriterWithKeys) {
 TEST(Participant, WhetherATopicHasKeysIsPartOfWhatItIs) {
   const TestDomain domain;
   const auto participant = join(domain);
-  const auto keyed = participant->create_writer({"t", "T", {.keys = Keys::kSome}, "", {}});
+  const auto keyed = participant->create_writer({"t", "T", {.keys = rtps::Keys::kSome}, "", {}});
   ASSERT_TRUE(keyed);
   const auto other = participant->create_writer({"t", "T", {}, "", {}});
   ASSERT_FALSE(other);
@@ -322,9 +324,9 @@ TEST(Participant, WhetherATopicHasKeysIsPartOfWhatItIs) {
 TEST(Participant, ATopicIsFreeAgainWhenItsLastUserIsGone) {
   const TestDomain domain;
   const auto participant = join(domain);
-  for (const Keys keys : {Keys::kNone, Keys::kSome, Keys::kNone}) {
+  for (const rtps::Keys keys : {rtps::Keys::kNone, rtps::Keys::kSome, rtps::Keys::kNone}) {
     for (const char* type : {"T", "Other", "T"}) {
-      const Qos qos{.keys = keys};
+      const rtps::Qos qos{.keys = keys};
       const auto writer = participant->create_writer({"t", type, qos, "", {}});
       const auto reader = participant->create_reader({"t", type, qos, PayloadUse::kWhole, "", {}},
                                                      [](const Sample&) {});
@@ -336,33 +338,33 @@ TEST(Participant, ATopicIsFreeAgainWhenItsLastUserIsGone) {
 
 TEST(Participant, DiscoversOthersTheirEndpointsAndTheirEnd) {
   const TestDomain domain;
-  EventLog<DiscoveryEvent> events;
+  rtps::EventLog<DiscoveryEvent> events;
   const auto watcher = join(domain, [&](DiscoveryEvent event) { events.add(std::move(event)); });
   auto other = join(domain);
-  const Qos qos{.durability = Durability::kTransientLocal,
-                .lifespan = std::chrono::seconds(10),
-                .liveliness = Liveliness::kManualByTopic,
-                .liveliness_lease = std::chrono::seconds(3),
-                .ownership = Ownership::kExclusive};
+  const rtps::Qos qos{.durability = rtps::Durability::kTransientLocal,
+                      .lifespan = std::chrono::seconds(10),
+                      .liveliness = rtps::Liveliness::kManualByTopic,
+                      .liveliness_lease = std::chrono::seconds(3),
+                      .ownership = rtps::Ownership::kExclusive};
   auto writer = other->create_writer({"t", "T", qos, "key=value;", {}});
   ASSERT_TRUE(writer);
-  const Guid guid = (*writer)->guid();
+  const rtps::Guid guid = (*writer)->guid();
   ASSERT_TRUE(events.wait_for_one([&](const DiscoveryEvent& event) {
-    const auto* info = std::get_if<EndpointInfo>(&event);
+    const auto* info = std::get_if<rtps::EndpointInfo>(&event);
     return info != nullptr && info->guid == guid;
   }));
   for (const DiscoveryEvent& event : events.all()) {
-    if (const auto* info = std::get_if<EndpointInfo>(&event)) {
+    if (const auto* info = std::get_if<rtps::EndpointInfo>(&event)) {
       EXPECT_EQ(info->topic, "t");
       EXPECT_EQ(info->type, "T");
       EXPECT_EQ(info->user_data, "key=value;");
-      EXPECT_EQ(info->qos.durability, Durability::kTransientLocal);
-      EXPECT_EQ(info->qos.reliability, Reliability::kReliable);
+      EXPECT_EQ(info->qos.durability, rtps::Durability::kTransientLocal);
+      EXPECT_EQ(info->qos.reliability, rtps::Reliability::kReliable);
       EXPECT_EQ(info->qos.lifespan, std::chrono::seconds(10));
-      EXPECT_EQ(info->qos.deadline, kInfinite);
-      EXPECT_EQ(info->qos.liveliness, Liveliness::kManualByTopic);
+      EXPECT_EQ(info->qos.deadline, rtps::kInfinite);
+      EXPECT_EQ(info->qos.liveliness, rtps::Liveliness::kManualByTopic);
       EXPECT_EQ(info->qos.liveliness_lease, std::chrono::seconds(3));
-      EXPECT_EQ(info->qos.ownership, Ownership::kExclusive);
+      EXPECT_EQ(info->qos.ownership, rtps::Ownership::kExclusive);
     }
     if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
       EXPECT_EQ(info->vendor, Vendor::kFastDds);
@@ -374,10 +376,10 @@ TEST(Participant, DiscoversOthersTheirEndpointsAndTheirEnd) {
   }
   writer = Error{"gone"};
   EXPECT_TRUE(events.wait_for_one([&](const DiscoveryEvent& event) {
-    const auto* gone = std::get_if<EndpointGone>(&event);
+    const auto* gone = std::get_if<rtps::EndpointGone>(&event);
     return gone != nullptr && gone->guid == guid;
   }));
-  const Guid participant = other->guid();
+  const rtps::Guid participant = other->guid();
   other.reset();
   EXPECT_TRUE(events.wait_for_one([&](const DiscoveryEvent& event) {
     const auto* gone = std::get_if<ParticipantGone>(&event);
@@ -389,7 +391,7 @@ TEST(Participant, DiscoversOthersTheirEndpointsAndTheirEnd) {
 
 ParticipantOptions meeting_only(const TestDomain& domain, std::string_view met) {
   ParticipantOptions options = domain.options();
-  options.never_meets = [met](std::string_view topic, EndpointRole) { return topic != met; };
+  options.never_meets = [met](std::string_view topic, rtps::EndpointRole) { return topic != met; };
   return options;
 }
 
@@ -406,14 +408,14 @@ class Known {
   DiscoveryCallback listener() {
     return [this](const DiscoveryEvent& event) {
       const MutexLock lock(mutex_);
-      if (const auto* info = std::get_if<EndpointInfo>(&event)) all_[info->guid] = *info;
-      if (const auto* gone = std::get_if<EndpointGone>(&event)) all_.erase(gone->guid);
+      if (const auto* info = std::get_if<rtps::EndpointInfo>(&event)) all_[info->guid] = *info;
+      if (const auto* gone = std::get_if<rtps::EndpointGone>(&event)) all_.erase(gone->guid);
       changed_.notify_all();
     };
   }
-  std::map<Guid, EndpointInfo> wait_for_count(std::size_t count) {
+  std::map<rtps::Guid, rtps::EndpointInfo> wait_for_count(std::size_t count) {
     MutexLock lock(mutex_);
-    changed_.wait_for(lock, kPatience,
+    changed_.wait_for(lock, rtps::kPatience,
                       [&]() CULPRIT_REQUIRES(mutex_) { return all_.size() == count; });
     return all_;
   }
@@ -421,19 +423,19 @@ class Known {
  private:
   Mutex mutex_;
   ConditionVariable changed_;
-  std::map<Guid, EndpointInfo> all_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<rtps::Guid, rtps::EndpointInfo> all_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 // Nodes on rmw_cyclonedds of Jazzy warn of each endpoint without user data.
 TEST(Participant, NoEndpointOfItsSaysNothing) {
   const TestDomain domain;
-  EventLog<DiscoveryEvent> events;
+  rtps::EventLog<DiscoveryEvent> events;
   const auto watcher = join(domain, [&](DiscoveryEvent event) { events.add(std::move(event)); });
   const auto other = join(domain);
   const auto writer = other->create_writer({"t", "T", {}, "", {}});
   ASSERT_TRUE(writer);
   EXPECT_TRUE(events.wait_for_one([](const DiscoveryEvent& event) {
-    const auto* info = std::get_if<EndpointInfo>(&event);
+    const auto* info = std::get_if<rtps::EndpointInfo>(&event);
     return info != nullptr && is_of_culprit(info->user_data);
   }));
 }
@@ -444,15 +446,15 @@ TEST(Participant, WhatItNeverMeetsIsDiscoveredAsAllElse) {
   const auto others = join(domain);
   std::vector<std::unique_ptr<Writer>> writers;
   std::vector<std::unique_ptr<Reader>> readers;
-  const Qos full{.durability = Durability::kTransientLocal,
-                 .deadline = std::chrono::milliseconds(123),
-                 .lifespan = std::chrono::seconds(10),
-                 .keys = Keys::kSome,
-                 .liveliness = Liveliness::kManualByTopic,
-                 .liveliness_lease = std::chrono::milliseconds(3100),
-                 .ownership = Ownership::kExclusive};
+  const rtps::Qos full{.durability = rtps::Durability::kTransientLocal,
+                       .deadline = std::chrono::milliseconds(123),
+                       .lifespan = std::chrono::seconds(10),
+                       .keys = rtps::Keys::kSome,
+                       .liveliness = rtps::Liveliness::kManualByTopic,
+                       .liveliness_lease = std::chrono::milliseconds(3100),
+                       .ownership = rtps::Ownership::kExclusive};
   const auto create = [&] {
-    for (const Qos& qos : {Qos{}, qos::kSensorData, qos::kRosout, full}) {
+    for (const rtps::Qos& qos : {rtps::Qos{}, rtps::qos::kSensorData, rtps::qos::kRosout, full}) {
       const std::string topic = "t" + std::to_string(writers.size());
       const std::string type = "T" + std::to_string(writers.size());
       writers.push_back(std::move(*others->create_writer({topic, type, qos, "key=value;", {}})));
@@ -477,11 +479,11 @@ TEST(Participant, WhatItNeverMeetsHoldsUpNothingElse) {
   const TestDomain domain;
   const auto sender = join(domain);
   const auto receiver = join(meeting_only(domain, "met"), [](DiscoveryEvent) {});
-  EventLog<Received> received;
-  EventLog<MatchEvent> matches;
+  rtps::EventLog<Received> received;
+  rtps::EventLog<MatchEvent> matches;
   const auto reader =
-      receiver->create_reader({"met", "T", qos::kDiscoveryInfoReader, PayloadUse::kWhole, "",
-                               [&](const Guid& remote, Match match) {
+      receiver->create_reader({"met", "T", rtps::qos::kDiscoveryInfoReader, PayloadUse::kWhole, "",
+                               [&](const rtps::Guid& remote, Match match) {
                                  matches.add({remote, match});
                                }},
                               into(received));
@@ -490,7 +492,7 @@ TEST(Participant, WhatItNeverMeetsHoldsUpNothingElse) {
   for (std::size_t i = 1; i <= 5; ++i) {
     for (const char* topic : {"never", "more", "met"})
       writers.push_back(
-          std::move(*sender->create_writer({topic, "T", qos::kDiscoveryInfoWriter, "", {}})));
+          std::move(*sender->create_writer({topic, "T", rtps::qos::kDiscoveryInfoWriter, "", {}})));
     writers.back()->write(kSmallPayload);
     EXPECT_TRUE(received.wait_for_count(i)) << i;
     writers.erase(writers.begin(), writers.begin() + 2);
@@ -501,8 +503,8 @@ TEST(Participant, WhatItNeverMeetsHoldsUpNothingElse) {
 TEST(Participant, WhatItIsNeverToMeetCannotBeCreated) {
   const TestDomain domain;
   ParticipantOptions options = domain.options();
-  options.never_meets = [](std::string_view topic, EndpointRole role) {
-    return topic == "read" && role == EndpointRole::kReader;
+  options.never_meets = [](std::string_view topic, rtps::EndpointRole role) {
+    return topic == "read" && role == rtps::EndpointRole::kReader;
   };
   const auto participant = join(options, [](DiscoveryEvent) {});
   EXPECT_TRUE(participant->create_reader({"read", "T", {}, PayloadUse::kWhole, "", {}},
@@ -516,7 +518,7 @@ TEST(Participant, WhatItIsNeverToMeetCannotBeCreated) {
 // It announces itself every second.
 TEST(Participant, AParticipantThatStaysAsItIsIsReportedOnce) {
   const TestDomain domain;
-  EventLog<Guid> told;
+  rtps::EventLog<rtps::Guid> told;
   const auto watcher = join(domain, [&](const DiscoveryEvent& event) {
     if (const auto* info = std::get_if<ParticipantInfo>(&event)) told.add(info->guid);
   });
@@ -526,7 +528,7 @@ TEST(Participant, AParticipantThatStaysAsItIsIsReportedOnce) {
   const auto announced = [&] { return watcher->heard_last(other->guid().prefix()); };
   for (int i = 0; i < 2; ++i) {  // without endpoints it sends nothing else
     const Time before = std::max(joined, announced());
-    const Time end = later(live_now(), kPatience);
+    const Time end = later(live_now(), rtps::kPatience);
     while (later(before, std::chrono::milliseconds(500)) >= announced() && live_now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     EXPECT_LT(before, announced());
@@ -559,7 +561,8 @@ class Eavesdropper {
   // Waits until something comes. False if nothing does.
   bool hears() const {
     pollfd what{descriptor_, POLLIN, 0};
-    return poll(&what, 1, static_cast<int>(std::chrono::milliseconds(kPatience).count())) == 1;
+    return poll(&what, 1, static_cast<int>(std::chrono::milliseconds(rtps::kPatience).count())) ==
+           1;
   }
 
  private:
@@ -578,7 +581,7 @@ TEST(Participant, IsAnnouncedToEachPortOfThisMachineThatSomebodyHas) {
 
 TEST(Participant, DomainsDoNotHearEachOther) {
   const TestDomain one, other;
-  EventLog<DiscoveryEvent> events;
+  rtps::EventLog<DiscoveryEvent> events;
   const auto watcher = join(one, [&](DiscoveryEvent event) { events.add(std::move(event)); });
   const auto stranger = join(other);
   const auto friendly = join(one);
@@ -615,7 +618,7 @@ TEST(Participant, TheSourcesOfAnotherAreItsSockets) {
   const auto origin = watcher->participant().origin_of(robot->participant().guid().prefix());
   EXPECT_TRUE(origin.is_complete);
   ASSERT_FALSE(origin.addresses.empty());
-  for (const UdpAddress& each : origin.addresses) {
+  for (const rtps::UdpAddress& each : origin.addresses) {
     EXPECT_EQ(each.ip, (std::array<std::uint8_t, 4>{127, 0, 0, 1}));
     EXPECT_GE(each.port, 1024);
   }
@@ -628,7 +631,7 @@ TEST(Participant, ReadersComeAndGoWhileSamplesFlow) {
     while (!stop) pair.writer->write(kSmallPayload);
   });
   for (int i = 0; i < 20; ++i) {
-    EventLog<Received> received;
+    rtps::EventLog<Received> received;
     const auto reader =
         pair.receiver->create_reader({"t", "T", {}, PayloadUse::kWhole, "", {}}, into(received));
     ASSERT_TRUE(reader);

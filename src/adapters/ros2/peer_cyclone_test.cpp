@@ -30,9 +30,9 @@ std::unique_ptr<PeerProcess> start_cyclone(const TestDomain& domain,
 
 std::unique_ptr<ServiceClient> changes_state(NodeEntry& node, const std::string& robot) {
   return std::move(*ServiceClient::create(
-      node, {robot + "/change_state", std::string(srv::ChangeState::kType)}, qos::kServices,
+      node, {robot + "/change_state", std::string(srv::ChangeState::kType)}, rtps::qos::kServices,
       {{robot + "/get_state", std::string(srv::GetState::kType)},
-       encode(srv::GetState::Request{})}));
+       rtps::encode(srv::GetState::Request{})}));
 }
 
 // A managed node of ours.
@@ -79,11 +79,11 @@ TEST(PeerCyclone, IsHeardByUs) {
   const TestDomain domain;
   LiveContext watcher(domain.options());
   NodeEntry node(*watcher, {"/", "watcher"});
-  EventLog<std::pair<double, std::int64_t>> values;
+  rtps::EventLog<std::pair<double, std::int64_t>> values;
   const auto subscription = RawSubscription::create(
-      node, "/t", msg::Float64::kType, qos::kSensorData, PayloadUse::kWhole,
+      node, "/t", msg::Float64::kType, rtps::qos::kSensorData, PayloadUse::kWhole,
       [&](const Sample& sample) {
-        values.add({decode<msg::Float64>(sample.payload)->data, sample.identity.sequence});
+        values.add({rtps::decode<msg::Float64>(sample.payload)->data, sample.identity.sequence});
       });
   ASSERT_TRUE(subscription);
   const auto peer = start_cyclone(domain, {"tick", "/t"});
@@ -111,12 +111,12 @@ TEST(PeerCyclone, IsANodeOfTheGraph) {
 TEST(PeerCyclone, IsDiscoveredAsAllOthersByAParticipantThatNeverMeetsIt) {
   const TestDomain domain;
   ParticipantOptions never = domain.options();
-  never.never_meets = [](std::string_view topic, EndpointRole) {
+  never.never_meets = [](std::string_view topic, rtps::EndpointRole) {
     return topic.starts_with("rq/") || topic.starts_with("rr/");
   };
   LiveContext past(never), through(domain.options());
   const auto endpoints = [](LiveContext& context) {
-    std::vector<EndpointInfo> all;
+    std::vector<rtps::EndpointInfo> all;
     context.run([&] {
       for (const auto& participant : context->graph().participants()) {
         for (const auto& each : participant.endpoints)
@@ -173,8 +173,8 @@ TEST(PeerCyclone, ServesUsAgainAtOnceAfterItWasKilled) {
     peer->end(SIGKILL);
     // A request that is never acknowledged: it must neither reach the successor nor spoil the first
     // one to it.
-    EventLog<CallOutcome> outcomes;
-    client->call(encode(srv::ChangeState::Request{{9, ""}}), Repeat::kNever, 20ms,
+    rtps::EventLog<CallOutcome> outcomes;
+    client->call(rtps::encode(srv::ChangeState::Request{{9, ""}}), Repeat::kNever, 20ms,
                  [&](const CallResult& result) { outcomes.add(result.outcome); });
     ASSERT_TRUE(outcomes.wait_for_count(1));
     EXPECT_EQ(outcomes.all().front(), CallOutcome::kTimedOut);

@@ -37,9 +37,9 @@ struct PeersManager {
 
   std::unique_ptr<ServiceClient> changes_state_of(const std::string& robot) {
     return std::move(*ServiceClient::create(
-        node, {robot + "/change_state", std::string(srv::ChangeState::kType)}, qos::kServices,
+        node, {robot + "/change_state", std::string(srv::ChangeState::kType)}, rtps::qos::kServices,
         {{robot + "/get_state", std::string(srv::GetState::kType)},
-         encode(srv::GetState::Request{})}));
+         rtps::encode(srv::GetState::Request{})}));
   }
 
   LiveContext context;
@@ -143,8 +143,8 @@ TEST(PeerNode, ASilentProcessTimesOutAndAnswersWhenItGoesOn) {
   const auto client = manager.changes_state_of("/peer");
   ASSERT_TRUE(change(*client, 1));
   kill(peer->pid(), SIGSTOP);
-  EventLog<CallOutcome> outcomes;
-  client->probe()->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered,
+  rtps::EventLog<CallOutcome> outcomes;
+  client->probe()->call(rtps::encode(srv::GetState::Request{}), Repeat::kUntilAnswered,
                         std::chrono::milliseconds(50),
                         [&](const CallResult& result) { outcomes.add(result.outcome); });
   ASSERT_TRUE(outcomes.wait_for_count(1));

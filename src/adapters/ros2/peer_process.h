@@ -43,7 +43,7 @@ class PeerProcess {
   PeerProcess& operator=(const PeerProcess&) = delete;
 
   int pid() const { return pid_; }
-  EventLog<std::string>& lines() { return lines_; }
+  rtps::EventLog<std::string>& lines() { return lines_; }
 
   bool says(const std::string& line) {
     return lines_.wait_for_one([&](const std::string& said) { return said == line; });
@@ -79,7 +79,7 @@ class PeerProcess {
   }
 
   pid_t pid_ = 0;
-  EventLog<std::string> lines_;
+  rtps::EventLog<std::string> lines_;
   std::thread reading_;
 };
 

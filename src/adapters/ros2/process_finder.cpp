@@ -20,31 +20,32 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_local(const std::array<std::uint8_t, 4>& ip) {
-  return ip[0] == 127 || own_addresses().contains(ip);
+  return ip[0] == 127 || rtps::own_addresses().contains(ip);
 }
 
 // The sockets that one address may belong to: several where they share a port.
 struct Candidates {
-  std::vector<UdpSocket> sockets;
+  std::vector<rtps::UdpSocket> sockets;
   // One that other processes have, too, proves nothing: each of them may have sent what came from there.
   bool is_exclusive = false;
 };
 
-Candidates bound_to(const UdpAddress& address, const std::vector<UdpSocket>& sockets) {
+Candidates bound_to(const rtps::UdpAddress& address, const std::vector<rtps::UdpSocket>& sockets) {
   Candidates found;
-  for (const UdpSocket& socket : sockets) {
-    const bool fits = socket.address.ip == Ip{} || socket.address.ip == address.ip;
+  for (const rtps::UdpSocket& socket : sockets) {
+    const bool fits = socket.address.ip == rtps::Ip{} || socket.address.ip == address.ip;
     if (fits && socket.address.port == address.port) found.sockets.push_back(socket);
   }
   return found;
 }
 
-Candidates sends_from(const UdpAddress& address, const std::vector<UdpSocket>& sockets) {
+Candidates sends_from(const rtps::UdpAddress& address,
+                      const std::vector<rtps::UdpSocket>& sockets) {
   Candidates found = bound_to(address, sockets);
   found.is_exclusive = true;
-  const auto is_ipv4 = [](const UdpSocket& each) { return !each.is_ipv6; };
+  const auto is_ipv4 = [](const rtps::UdpSocket& each) { return !each.is_ipv6; };
   if (std::ranges::any_of(found.sockets, is_ipv4))
-    std::erase_if(found.sockets, [](const UdpSocket& each) { return each.is_ipv6; });
+    std::erase_if(found.sockets, [](const rtps::UdpSocket& each) { return each.is_ipv6; });
   return found;
 }
 
@@ -64,11 +65,11 @@ std::vector<unsigned> users_of(const fs::path& process) {
 class Holdings {
  public:
   explicit Holdings(const fs::path& process)
-      : links_(descriptors_of(process).value_or(std::set<std::string>())),
+      : links_(rtps::descriptors_of(process).value_or(std::set<std::string>())),
         users_(links_.empty() ? std::vector<unsigned>() : users_of(process)) {}
 
   bool has(const Candidates& each) const {
-    const auto is_its = [&](const UdpSocket& socket) {
+    const auto is_its = [&](const rtps::UdpSocket& socket) {
       return links_.contains(socket.link) && std::ranges::find(users_, socket.user) != users_.end();
     };
     return each.is_exclusive ? !each.sockets.empty() && std::ranges::all_of(each.sockets, is_its)
@@ -91,16 +92,18 @@ int to_pid(const fs::path& process) {
 }
 
 // The latest if it is unknown.
-std::uint64_t began(const fs::path& process) { return running_since(process).value_or(UINT64_MAX); }
+std::uint64_t began(const fs::path& process) {
+  return rtps::running_since(process).value_or(UINT64_MAX);
+}
 
 }  // namespace
 
 ProcessFinder::ProcessFinder(fs::path proc) : proc_(std::move(proc)) {}
 
 FoundProcess ProcessFinder::find(const ParticipantInfo& participant) const {
-  std::vector<UdpAddress> addresses;
+  std::vector<rtps::UdpAddress> addresses;
   bool may_be_elsewhere = false;
-  for (const UdpAddress& each : participant.metatraffic) {
+  for (const rtps::UdpAddress& each : participant.metatraffic) {
     if (is_local(each.ip)) {
       addresses.push_back(each);
     } else {
@@ -116,13 +119,13 @@ FoundProcess ProcessFinder::find(const ParticipantInfo& participant) const {
 // A participant keeps its listening sockets until it exits, and one that it sends from. A new
 // process may get the first ones.
 bool ProcessFinder::has_ended(const ParticipantInfo& participant) const {
-  const std::vector<UdpAddress>& from = participant.origin.addresses;
-  const auto is_here = [](const UdpAddress& each) { return is_local(each.ip); };
+  const std::vector<rtps::UdpAddress>& from = participant.origin.addresses;
+  const auto is_here = [](const rtps::UdpAddress& each) { return is_local(each.ip); };
   if (!std::all_of(from.begin(), from.end(), is_here)) return false;
   const auto is_missed = [&] {
-    const std::vector<UdpSocket> sockets = udp_sockets(proc_);
+    const std::vector<rtps::UdpSocket> sockets = rtps::udp_sockets(proc_);
     if (sockets.empty()) return false;  // at least the socket that sent the announcement exists
-    const auto is_nobodys = [&](const UdpAddress& each) {
+    const auto is_nobodys = [&](const rtps::UdpAddress& each) {
       return bound_to(each, sockets).sockets.empty();
     };
     return std::any_of(participant.metatraffic.begin(), participant.metatraffic.end(),
@@ -135,12 +138,13 @@ bool ProcessFinder::has_ended(const ParticipantInfo& participant) const {
 }
 
 FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
-                                  std::vector<UdpAddress> addresses, bool may_be_elsewhere) const {
+                                  std::vector<rtps::UdpAddress> addresses,
+                                  bool may_be_elsewhere) const {
   if (!participant.origin.is_complete)
     return {0, participant.origin.addresses.empty()
                    ? "nothing is known of where its datagrams come from"
                    : "its datagrams come from more places than one process has"};
-  for (const UdpAddress& each : participant.origin.addresses) {
+  for (const rtps::UdpAddress& each : participant.origin.addresses) {
     // Every machine with containers has the address of a bridge, and it is the same one.
     if (!is_local(each.ip) && may_be_elsewhere) return {};
     if (!is_local(each.ip))
@@ -149,9 +153,9 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
     addresses.push_back(each);
   }
 
-  const std::vector<UdpSocket> sockets = udp_sockets(proc_);
+  const std::vector<rtps::UdpSocket> sockets = rtps::udp_sockets(proc_);
   std::vector<Candidates> needed;
-  for (const UdpAddress& each : addresses) {
+  for (const rtps::UdpAddress& each : addresses) {
     const bool is_heard =
         std::ranges::find(participant.origin.addresses, each) != participant.origin.addresses.end();
     needed.push_back(is_heard ? sends_from(each, sockets) : bound_to(each, sockets));
@@ -162,7 +166,7 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
   const int pid = oldest(
       participant.pid, [&](const fs::path& process) { return Holdings(process).has_all(needed); });
   if (pid != 0) return {pid, ""};
-  const auto is_trusted = [user = geteuid()](const UdpSocket& socket) {
+  const auto is_trusted = [user = geteuid()](const rtps::UdpSocket& socket) {
     return socket.user == 0 || socket.user == user;
   };
   const bool are_trusted = std::ranges::all_of(needed, [&](const Candidates& each) {
@@ -170,7 +174,7 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
                              : std::ranges::any_of(each.sockets, is_trusted);
   });
   std::string all;
-  for (const UdpAddress& each : addresses) all += (all.empty() ? "" : ", ") + to_text(each);
+  for (const rtps::UdpAddress& each : addresses) all += (all.empty() ? "" : ", ") + to_text(each);
   return {0,
           "no process with readable files holds all of its sockets (" + all +
               ") alone; culprit may read another user's only with CAP_SYS_PTRACE",
@@ -178,13 +182,13 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
 }
 
 int ProcessFinder::speaker(const ParticipantInfo& participant) const {
-  const std::vector<UdpSocket> sockets = udp_sockets(proc_);
+  const std::vector<rtps::UdpSocket> sockets = rtps::udp_sockets(proc_);
   std::vector<Candidates> announced;
-  for (const UdpAddress& each : participant.metatraffic) {
+  for (const rtps::UdpAddress& each : participant.metatraffic) {
     if (is_local(each.ip)) announced.push_back(bound_to(each, sockets));
   }
   std::vector<Candidates> heard;
-  for (const UdpAddress& each : participant.origin.addresses) {
+  for (const rtps::UdpAddress& each : participant.origin.addresses) {
     if (is_local(each.ip)) heard.push_back(sends_from(each, sockets));
   }
   if (announced.empty() || heard.empty()) return 0;
@@ -210,7 +214,7 @@ int ProcessFinder::oldest(int said, const std::function<bool(const fs::path&)>& 
 }
 
 bool ProcessFinder::is_running(int pid) const {
-  return running_since(proc_ / std::to_string(pid)).has_value();
+  return rtps::running_since(proc_ / std::to_string(pid)).has_value();
 }
 
 }  // namespace culprit::ros2

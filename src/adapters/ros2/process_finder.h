@@ -41,7 +41,7 @@ class ProcessFinder {
   bool is_running(int pid) const;
 
  private:
-  FoundProcess prove(const ParticipantInfo& participant, std::vector<UdpAddress> addresses,
+  FoundProcess prove(const ParticipantInfo& participant, std::vector<rtps::UdpAddress> addresses,
                      bool may_be_elsewhere) const;
   bool has_ended(const ParticipantInfo& participant) const;
   int oldest(int said, const std::function<bool(const std::filesystem::path&)>& is_it) const;

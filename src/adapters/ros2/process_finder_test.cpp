@@ -23,11 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr Ip kOtherLoopback = {127, 0, 0, 2};
-constexpr Ip kElsewhere = {203, 0, 113, 1};  // 203.0.113.0/24 is for documentation only
+constexpr rtps::Ip kOtherLoopback = {127, 0, 0, 2};
+constexpr rtps::Ip kElsewhere = {203, 0, 113, 1};  // 203.0.113.0/24 is for documentation only
 
 // Announces one address and sends from another.
-ParticipantInfo participant(const UdpAddress& announced, const UdpAddress& sends_from,
+ParticipantInfo participant(const rtps::UdpAddress& announced, const rtps::UdpAddress& sends_from,
                             int said_pid = 0) {
   ParticipantInfo info;
   info.pid = said_pid;
@@ -37,7 +37,7 @@ ParticipantInfo participant(const UdpAddress& announced, const UdpAddress& sends
 }
 
 struct Sockets {
-  TestSocket listens, sends;
+  rtps::TestSocket listens, sends;
   ParticipantInfo participant(int said_pid = 0) const {
     return ros2::participant(listens.address(), sends.address(), said_pid);
   }
@@ -61,8 +61,8 @@ TEST(ProcessFinder, CorrectsAFalseClaim) {
 }
 
 TEST(ProcessFinder, OfForksThatHoldTheSameItFindsTheOldest) {
-  const TestSocket socket;
-  const TestFork fork(socket.descriptor());
+  const rtps::TestSocket socket;
+  const rtps::TestFork fork(socket.descriptor());
   const ParticipantInfo both = participant(socket.address(), socket.address());
   EXPECT_EQ(ProcessFinder().find(both).pid, getpid());
 }
@@ -90,7 +90,7 @@ TEST(ProcessFinder, AProcessElsewhereMayHaveAnAddressOfOurs) {
 // Somebody on the network announces a port of this machine as his own.
 TEST(ProcessFinder, AnAnnouncedPortAloneProvesNothing) {
   const Sockets sockets;
-  const UdpAddress attacker{kElsewhere, 4321};
+  const rtps::UdpAddress attacker{kElsewhere, 4321};
   const FoundProcess found =
       ProcessFinder().find(participant(sockets.listens.address(), attacker, getpid()));
   EXPECT_EQ(found.pid, 0);
@@ -108,9 +108,9 @@ TEST(ProcessFinder, OneForeignDatagramSpeaksAgainstIt) {
 }
 
 TEST(ProcessFinder, APortOfSomebodyElseProvesNothing) {
-  auto others = std::make_unique<TestSocket>();
-  const TestFork victim(others->descriptor());
-  const UdpAddress announced = others->address();
+  auto others = std::make_unique<rtps::TestSocket>();
+  const rtps::TestFork victim(others->descriptor());
+  const rtps::UdpAddress announced = others->address();
   others.reset();  // the fork alone has it
   const Sockets sockets;
   const FoundProcess found =
@@ -120,8 +120,8 @@ TEST(ProcessFinder, APortOfSomebodyElseProvesNothing) {
 }
 
 TEST(ProcessFinder, APortOfAnotherAddressIsAnother) {
-  const TestSocket listens(kOtherLoopback), sends;
-  const UdpAddress announced{kLoopback, listens.address().port};
+  const rtps::TestSocket listens(kOtherLoopback), sends;
+  const rtps::UdpAddress announced{rtps::kLoopback, listens.address().port};
   EXPECT_EQ(ProcessFinder().find(participant(listens.address(), sends.address())).pid, getpid());
   EXPECT_EQ(ProcessFinder().find(participant(announced, sends.address())).pid, 0);
 }
@@ -136,9 +136,9 @@ TEST(ProcessFinder, WithoutADatagramNothingIsProven) {
 }
 
 TEST(ProcessFinder, KnowsNothingOfAClosedPort) {
-  UdpAddress closed;
-  closed = TestSocket().address();
-  const TestSocket sends;
+  rtps::UdpAddress closed;
+  closed = rtps::TestSocket().address();
+  const rtps::TestSocket sends;
   EXPECT_THAT(ProcessFinder().find(participant(closed, sends.address(), getpid())).missing,
               HasSubstr("no process of this machine has the socket"));
 }
@@ -158,9 +158,9 @@ TEST(ProcessFinder, AProcessWithoutItsSocketsHasEnded) {
 }
 
 TEST(ProcessFinder, AProcessThatMayBeElsewhereIsNotKnownToHaveEnded) {
-  UdpAddress closed;
-  closed = TestSocket().address();
-  const TestSocket sends;
+  rtps::UdpAddress closed;
+  closed = rtps::TestSocket().address();
+  const rtps::TestSocket sends;
   ParticipantInfo info = participant(closed, sends.address());
   info.metatraffic.push_back({kElsewhere, 7410});
   EXPECT_FALSE(ProcessFinder().find(info).has_ended);
@@ -198,25 +198,26 @@ class FakeProc {
 TEST(ProcessFinder, ReadsTheTablesOfTheKernel) {
   const FakeProc proc("1000");
   const ProcessFinder finder(proc.path());
-  EXPECT_EQ(finder.find(participant({kLoopback, 0x1cf2}, {kLoopback, 0x1cf4})).pid, 4242);
-  EXPECT_EQ(finder.find(participant({kLoopback, 0x1cf3}, {kLoopback, 0x1cf4})).pid, 0);
+  EXPECT_EQ(finder.find(participant({rtps::kLoopback, 0x1cf2}, {rtps::kLoopback, 0x1cf4})).pid,
+            4242);
+  EXPECT_EQ(finder.find(participant({rtps::kLoopback, 0x1cf3}, {rtps::kLoopback, 0x1cf4})).pid, 0);
 }
 
 // A socket can be handed to the process of another user, which then holds it.
 TEST(ProcessFinder, ASocketThatAnotherUserMadeProvesNothing) {
   const FakeProc proc("0");
   EXPECT_EQ(ProcessFinder(proc.path())
-                .find(participant({kLoopback, 0x1cf2}, {kLoopback, 0x1cf4}, 4242))
+                .find(participant({rtps::kLoopback, 0x1cf2}, {rtps::kLoopback, 0x1cf4}, 4242))
                 .pid,
             0);
 }
 
 TEST(ProcessFinder, KnowsTheSpeakerThoughOthersSpeakInThatNameToo) {
-  std::optional<TestSocket> its(std::in_place);
-  const UdpAddress address = its->address();
-  const TestFork process(its->descriptor());
+  std::optional<rtps::TestSocket> its(std::in_place);
+  const rtps::UdpAddress address = its->address();
+  const rtps::TestFork process(its->descriptor());
   its.reset();
-  const TestSocket stranger;
+  const rtps::TestSocket stranger;
   ParticipantInfo info = participant(address, address);
   info.origin.addresses.push_back(stranger.address());
   EXPECT_EQ(ProcessFinder().find(info).pid, 0);
@@ -227,21 +228,24 @@ TEST(ProcessFinder, KnowsTheSpeakerThoughOthersSpeakInThatNameToo) {
 
 // As the port for multicast is, which every participant has.
 TEST(ProcessFinder, APortThatOthersShareProvesNothing) {
-  std::optional<TestSocket> its(std::in_place);
-  std::optional<TestSocket> shared(std::in_place, kLoopback, TestSocket::Port::kShared);
-  const TestFork process(its->descriptor(), shared->descriptor());
-  const UdpAddress announced = its->address();
-  const UdpAddress multicast = shared->address();
+  std::optional<rtps::TestSocket> its(std::in_place);
+  std::optional<rtps::TestSocket> shared(std::in_place, rtps::kLoopback,
+                                         rtps::TestSocket::Port::kShared);
+  const rtps::TestFork process(its->descriptor(), shared->descriptor());
+  const rtps::UdpAddress announced = its->address();
+  const rtps::UdpAddress multicast = shared->address();
   its.reset();
   shared.reset();
   EXPECT_EQ(ProcessFinder().find(participant(announced, multicast)).pid, process.pid());
-  const TestSocket stranger(kLoopback, TestSocket::Port::kShared, multicast.port);
+  const rtps::TestSocket stranger(rtps::kLoopback, rtps::TestSocket::Port::kShared, multicast.port);
   EXPECT_EQ(ProcessFinder().find(participant(announced, multicast)).pid, 0);
   EXPECT_EQ(ProcessFinder().speaker(participant(announced, multicast)), 0);
 }
 
 TEST(ProcessFinder, SurvivesAMissingProcFileSystem) {
-  EXPECT_EQ(ProcessFinder("/does/not/exist").find(participant({kLoopback, 1}, {kLoopback, 2})).pid,
+  EXPECT_EQ(ProcessFinder("/does/not/exist")
+                .find(participant({rtps::kLoopback, 1}, {rtps::kLoopback, 2}))
+                .pid,
             0);
 }
 

@@ -6,7 +6,8 @@ namespace culprit::ros2 {
 
 Expected<std::unique_ptr<RawPublisher>> RawPublisher::create(NodeEntry& node,
                                                              std::string_view topic,
-                                                             std::string_view type, const Qos& qos,
+                                                             std::string_view type,
+                                                             const rtps::Qos& qos,
                                                              std::string_view type_hash) {
   const auto name = resolve_name(topic, node.name());
   if (!name) return Error{name.error()};

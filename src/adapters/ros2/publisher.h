@@ -17,7 +17,7 @@ class RawPublisher {
   // `topic` as resolve_name takes it; `type` is "package/msg/Type". The node entry outlives the
   // publisher. `type_hash` is announced (type_description.h), unless it is empty.
   static Expected<std::unique_ptr<RawPublisher>> create(NodeEntry& node, std::string_view topic,
-                                                        std::string_view type, const Qos& qos,
+                                                        std::string_view type, const rtps::Qos& qos,
                                                         std::string_view type_hash = {});
   RawPublisher(NodeEntry& node, std::unique_ptr<Writer> writer);
   ~RawPublisher();
@@ -25,7 +25,7 @@ class RawPublisher {
   RawPublisher& operator=(const RawPublisher&) = delete;
 
   // False when the middleware refused it.
-  bool publish(ByteView payload) { return writer_->write(payload).has_value(); }
+  bool publish(rtps::ByteView payload) { return writer_->write(payload).has_value(); }
 
  private:
   NodeEntry& node_;
@@ -37,7 +37,7 @@ class Publisher {
  public:
   explicit Publisher(std::unique_ptr<RawPublisher> raw) : raw_(std::move(raw)) {}
 
-  bool publish(const Message& message) { return raw_->publish(encode(message)); }
+  bool publish(const Message& message) { return raw_->publish(rtps::encode(message)); }
 
  private:
   std::unique_ptr<RawPublisher> raw_;

@@ -19,7 +19,7 @@ class SampleGaps {
     bool lost_here = false;       // we may have dropped some of them
   };
 
-  Step next(const Guid& writer, std::int64_t sequence, std::uint64_t dropped_here) {
+  Step next(const rtps::Guid& writer, std::int64_t sequence, std::uint64_t dropped_here) {
     constexpr std::size_t kMaxWriters = 1000;  // the network decides how many there are
     constexpr std::int64_t kMaxGap = 1000;     // a larger one is a restart or a lie
     if (last_.size() >= kMaxWriters) last_.clear();
@@ -36,7 +36,7 @@ class SampleGaps {
     std::int64_t sequence = 0;
     std::uint64_t dropped_here = 0;  // before it
   };
-  std::unordered_map<Guid, Last> last_;  // by writer
+  std::unordered_map<rtps::Guid, Last> last_;  // by writer
 };
 
 }  // namespace culprit::ros2

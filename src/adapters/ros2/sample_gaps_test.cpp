@@ -7,8 +7,8 @@
 namespace culprit::ros2 {
 namespace {
 
-Guid writer(int number) {
-  Guid guid;
+rtps::Guid writer(int number) {
+  rtps::Guid guid;
   guid.bytes[0] = static_cast<std::uint8_t>(number);
   guid.bytes[1] = static_cast<std::uint8_t>(number >> 8);
   return guid;

@@ -59,7 +59,7 @@ TEST(Security, HearsThoseWithKeysAndNoOthers) {
   same.topic = what.topic;
   same.type = what.type;
 
-  EventLog<std::string> heard;
+  rtps::EventLog<std::string> heard;
   const auto open = [&](const ParticipantOptions& options) {
     auto participant = Participant::create(options, [](DiscoveryEvent) {});
     if (!participant) throw std::runtime_error(participant.error());
@@ -76,16 +76,16 @@ TEST(Security, HearsThoseWithKeysAndNoOthers) {
   const auto friendly = open(secured);
   std::promise<void> matched;
   WriterOptions watched = same;
-  watched.on_match = [&](const Guid&, Match match) {
+  watched.on_match = [&](const rtps::Guid&, Match match) {
     if (match == Match::kMade) matched.set_value();
   };
   const auto speaking = friendly->create_writer(watched);
   ASSERT_TRUE(speaking) << speaking.error();
-  ASSERT_EQ(matched.get_future().wait_for(kPatience), std::future_status::ready);
+  ASSERT_EQ(matched.get_future().wait_for(rtps::kPatience), std::future_status::ready);
 
   const auto payload = [](std::string text) {
     text.insert(0, std::string("\0\1\0\0", 4));
-    return Bytes(text.begin(), text.end());
+    return rtps::Bytes(text.begin(), text.end());
   };
   (*intruding)->write(payload("I am nobody "));
   (*speaking)->write(payload("I am a friend"));

@@ -23,7 +23,8 @@ Executor::Clock::time_point after(Duration d) {
 
 Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
                                                                const ServiceName& service,
-                                                               const Qos& qos, Haste haste) {
+                                                               const rtps::Qos& qos,
+                                                               rtps::Haste haste) {
   std::unique_ptr<ServiceClient> client(new ServiceClient(node));
   if (auto opened = client->open(service, qos, haste); !opened) return Error{opened.error()};
   return client;
@@ -31,7 +32,7 @@ Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
 
 Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
                                                                const ServiceName& service,
-                                                               const Qos& qos, Probe probe) {
+                                                               const rtps::Qos& qos, Probe probe) {
   auto client = create(node, service, qos);
   if (!client) return client;
   // Second: data that the server discovers later prove that it discovered the earlier ones.
@@ -48,17 +49,18 @@ ServiceClient::ServiceClient(NodeEntry& node)
 // A client with kSoon repeats a request itself if it is lost, so answers need no acknowledgements.
 // And only the last request is kept, so that Fast DDS asks for the acknowledgement of each with the
 // request itself.
-Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos, Haste haste) {
+Expected<void> ServiceClient::open(const ServiceName& service, const rtps::Qos& qos,
+                                   rtps::Haste haste) {
   if (!is_valid_topic_name(service.name))
     return Error{"'" + printable(service.name) + "' is not the name of a service"};
   if (!is_valid_type_name(service.type))
     return Error{"'" + printable(service.type) + "' is not the type of a service"};
   Participant& participant = node_.context().participant();
   const std::string user_data = "clientid=" + node_.context().unique_id() + ";";
-  Qos answers = qos;
-  Qos requests = qos;
-  if (haste == Haste::kSoon) {
-    answers.reliability = Reliability::kBestEffort;
+  rtps::Qos answers = qos;
+  rtps::Qos requests = qos;
+  if (haste == rtps::Haste::kSoon) {
+    answers.reliability = rtps::Reliability::kBestEffort;
     requests.depth = 1;
   }
 
@@ -66,10 +68,10 @@ Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos, H
       {.topic = mangle_topic(Channel::kReply, service.name),
        .type = mangle_type(Channel::kReply, service.type),
        .qos = answers,
-       .payload = haste == Haste::kSoon ? PayloadUse::kWholeLater : PayloadUse::kWhole,
+       .payload = haste == rtps::Haste::kSoon ? PayloadUse::kWholeLater : PayloadUse::kWhole,
        .user_data = user_data,
        .on_match =
-           [this](const Guid& remote, Match match) {
+           [this](const rtps::Guid& remote, Match match) {
              tasks_.post([this, remote, match] { on_reply_writer(remote, match); });
            }},
       [this](const Sample& sample) { on_reply(sample); });
@@ -83,26 +85,26 @@ Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos, H
        .qos = requests,
        .user_data = user_data,
        .on_match =
-           [this](const Guid& remote, Match match) {
+           [this](const rtps::Guid& remote, Match match) {
              tasks_.post([this, remote, match] { on_request_reader(remote, match); });
            },
        .haste = haste});
   if (!writer) return Error{writer.error()};
-  const Guid guid = (*writer)->guid();
+  const rtps::Guid guid = (*writer)->guid();
   node_.add(guid);
   {
     const MutexLock lock(mutex_);  // from now on a server may match, and a task of ours send
     request_writer_ = std::move(*writer);
     reader_id_ = reply_reader_->guid();
     writer_id_ = guid;
-    header_id_ = std::hash<Guid>()(guid);
+    header_id_ = std::hash<rtps::Guid>()(guid);
   }
   node_.context().watch_servers(this, service.name, [this] { on_server_left(); });
   return {};
 }
 
 Expected<void> ServiceClient::open_probe(Probe probe) {
-  auto client = create(node_, probe.service, qos::kServices, Haste::kSoon);
+  auto client = create(node_, probe.service, rtps::qos::kServices, rtps::Haste::kSoon);
   if (!client) return Error{client.error()};
   {
     const MutexLock lock(mutex_);
@@ -123,8 +125,8 @@ ServiceClient::~ServiceClient() {
   request_writer_.reset();
 }
 
-void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callback callback,
-                         Haste haste) {
+void ServiceClient::call(rtps::Bytes request, Repeat repeat, Duration timeout, Callback callback,
+                         rtps::Haste haste) {
   const MutexLock lock(mutex_);
   const CallNumber number = ++last_call_;
   Call& call = calls_[number];
@@ -133,16 +135,17 @@ void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callbac
   call.callback = std::move(callback);
   if (server_for(repeat) != nullptr) send(number, call);
   // An answer that came in time may still lie in its socket.
-  const Duration patience = haste == Haste::kSoon ? timeout + ReceiveThread::kSoon : timeout;
+  const Duration patience =
+      haste == rtps::Haste::kSoon ? timeout + rtps::ReceiveThread::kSoon : timeout;
   call.deadline = tasks_.post_at(after(patience), [this, number] { on_deadline(number); });
   if (repeat == Repeat::kUntilAnswered) {
     call.next_send = tasks_.post_at(after(again_after_), [this, number] { on_send_again(number); });
   }
-  if (haste == Haste::kNow)
+  if (haste == rtps::Haste::kNow)
     call.hurry = std::make_unique<Participant::Hurry>(node_.context().participant());
 }
 
-void ServiceClient::ask_only(const GuidPrefix& participant) {
+void ServiceClient::ask_only(const rtps::GuidPrefix& participant) {
   {
     const MutexLock lock(mutex_);
     if (only_ == participant) return;
@@ -195,7 +198,7 @@ std::optional<ServiceClient::Call> ServiceClient::take(CallNumber number) {
 void ServiceClient::on_reply(const Sample& sample) {
   RequestId id;
   std::optional<SplitPayload> split;
-  if (sample.related.writer != Guid{}) {
+  if (sample.related.writer != rtps::Guid{}) {
     id = {Mapping::kInline, sample.related.sequence};
   } else {
     split = split_header(sample.payload);
@@ -216,11 +219,11 @@ void ServiceClient::on_reply(const Sample& sample) {
     call = take(request->second.call);
   }
   call->callback({.outcome = CallOutcome::kAnswered,
-                  .reply = split ? ByteView(split->payload) : sample.payload,
+                  .reply = split ? rtps::ByteView(split->payload) : sample.payload,
                   .server = sample.identity.writer.prefix()});
 }
 
-void ServiceClient::on_request_reader(const Guid& reader, Match match) {
+void ServiceClient::on_request_reader(const rtps::Guid& reader, Match match) {
   if (match == Match::kMade) {
     request_readers_.emplace(reader, ++matches_);
     // Requests that an exited server did not acknowledge must not delay those to its successor
@@ -233,7 +236,7 @@ void ServiceClient::on_request_reader(const Guid& reader, Match match) {
   update_servers_soon_.post();
 }
 
-void ServiceClient::on_reply_writer(const Guid& writer, Match match) {
+void ServiceClient::on_reply_writer(const rtps::Guid& writer, Match match) {
   if (match == Match::kMade) {
     reply_writers_.emplace(writer, ++matches_);
   } else {
@@ -244,20 +247,21 @@ void ServiceClient::on_reply_writer(const Guid& writer, Match match) {
 
 void ServiceClient::update_servers() {
   const Graph& graph = node_.context().graph();
-  const std::vector<GuidPrefix> all =
-      servers_among(request_readers_, reply_writers_, [&graph](const Guid& guid) {
-        const EndpointInfo* info = graph.endpoint(guid);
+  const std::vector<rtps::GuidPrefix> all =
+      servers_among(request_readers_, reply_writers_, [&graph](const rtps::Guid& guid) {
+        const rtps::EndpointInfo* info = graph.endpoint(guid);
         return info == nullptr ? std::string_view() : user_data_value(info->user_data, "serviceid");
       });
   {
     const MutexLock lock(mutex_);
-    const auto is_known = [](const std::vector<Server>& servers, const GuidPrefix& participant) {
+    const auto is_known = [](const std::vector<Server>& servers,
+                             const rtps::GuidPrefix& participant) {
       return std::ranges::find(servers, participant, &Server::participant) != servers.end();
     };
     const std::vector<Server> before = std::move(servers_);
     servers_.clear();
     bool has_new = false;
-    for (const GuidPrefix& each : all) {
+    for (const rtps::GuidPrefix& each : all) {
       if (only_ && each != *only_) continue;
       has_new = has_new || !is_known(before, each);
       servers_.push_back({each, mapping_of(graph.participant(each))});
@@ -310,11 +314,11 @@ void ServiceClient::start_probe() {
           on_probe(round, outcome, server);
         });
       },
-      Haste::kSoon);
+      rtps::Haste::kSoon);
 }
 
 void ServiceClient::on_probe(std::uint64_t round, CallOutcome outcome,
-                             const GuidPrefix& participant) {
+                             const rtps::GuidPrefix& participant) {
   is_probing_ = false;
   if (outcome != CallOutcome::kAnswered) return start_probe();
   {

@@ -57,8 +57,8 @@ enum class CallOutcome : std::uint8_t {
 
 struct CallResult {
   CallOutcome outcome = CallOutcome::kUnreachable;
-  ByteView reply;     // a payload with its encapsulation; gone when the callback returns
-  GuidPrefix server;  // the participant that answered
+  rtps::ByteView reply;     // a payload with its encapsulation; gone when the callback returns
+  rtps::GuidPrefix server;  // the participant that answered
 };
 
 // Thread-safe. The callback of a call comes once: an answer on a receive thread (participant.h
@@ -70,25 +70,24 @@ class ServiceClient {
 
   struct Probe {
     ServiceName service;
-    Bytes request;
+    rtps::Bytes request;
   };
 
   // The node entry outlives the client. kSoon: for a client that repeats its requests, and mostly
   // has time, as the client of a probe; its answers are not sent again by the server if they are
   // lost.
+  static Expected<std::unique_ptr<ServiceClient>> create(
+      NodeEntry& node, const ServiceName& service, const rtps::Qos& qos = rtps::qos::kServices,
+      rtps::Haste haste = rtps::Haste::kNow);
   static Expected<std::unique_ptr<ServiceClient>> create(NodeEntry& node,
                                                          const ServiceName& service,
-                                                         const Qos& qos = qos::kServices,
-                                                         Haste haste = Haste::kNow);
-  static Expected<std::unique_ptr<ServiceClient>> create(NodeEntry& node,
-                                                         const ServiceName& service, const Qos& qos,
-                                                         Probe probe);
+                                                         const rtps::Qos& qos, Probe probe);
   ~ServiceClient();
 
   // Sends in the calling thread if a server is ready, otherwise as soon as one is. `request` is a
   // whole payload. kSoon: the answer of a client that has time may come ReceiveThread::kSoon late, and so its absence.
-  void call(Bytes request, Repeat repeat, Duration timeout, Callback callback,
-            Haste haste = Haste::kNow);
+  void call(rtps::Bytes request, Repeat repeat, Duration timeout, Callback callback,
+            rtps::Haste haste = rtps::Haste::kNow);
 
   // A request with Repeat::kNever would be sent at once.
   bool is_ready() const;
@@ -98,15 +97,15 @@ class ServiceClient {
 
   // From now on only servers of this participant count, also for the probe: anybody may offer a service of the same name,
   // and receives what is asked of it. An answer of others is none, and a call goes on waiting.
-  void ask_only(const GuidPrefix& participant);
+  void ask_only(const rtps::GuidPrefix& participant);
 
  private:
   struct Server {
-    GuidPrefix participant;
+    rtps::GuidPrefix participant;
     Mapping mapping = Mapping::kInline;
   };
   struct Call {
-    Bytes request;
+    rtps::Bytes request;
     Repeat repeat = Repeat::kNever;
     Callback callback;
     std::unique_ptr<Participant::Hurry> hurry;  // unless it has time
@@ -122,19 +121,19 @@ class ServiceClient {
   };
 
   explicit ServiceClient(NodeEntry& node);
-  Expected<void> open(const ServiceName& service, const Qos& qos, Haste haste);
+  Expected<void> open(const ServiceName& service, const rtps::Qos& qos, rtps::Haste haste);
   Expected<void> open_probe(Probe probe);
 
   // On a receive thread.
   void on_reply(const Sample& sample);
   // On the executor's thread.
-  void on_request_reader(const Guid& reader, Match match);
-  void on_reply_writer(const Guid& writer, Match match);
+  void on_request_reader(const rtps::Guid& reader, Match match);
+  void on_reply_writer(const rtps::Guid& writer, Match match);
   void update_servers();
   void on_server_left();
   void send_waiting();
   void start_probe();
-  void on_probe(std::uint64_t round, CallOutcome outcome, const GuidPrefix& participant);
+  void on_probe(std::uint64_t round, CallOutcome outcome, const rtps::GuidPrefix& participant);
   void on_send_again(CallNumber number);
   void on_deadline(CallNumber number);
 
@@ -147,8 +146,8 @@ class ServiceClient {
   NodeEntry& node_;
   // The ids by which replies name us. They are copies: a reply may come while reader and writer are
   // being destroyed.
-  Guid reader_id_;
-  Guid writer_id_;
+  rtps::Guid reader_id_;
+  rtps::Guid writer_id_;
   std::uint64_t header_id_ = 0;  // what Cyclone knows us by
 
   // Used by the executor's thread only: the matched endpoints, with the order in which they came.
@@ -160,7 +159,8 @@ class ServiceClient {
   mutable Mutex mutex_;
   std::vector<Server> servers_
       CULPRIT_GUARDED_BY(mutex_);  // both endpoints matched; the newest last
-  std::optional<GuidPrefix> only_ CULPRIT_GUARDED_BY(mutex_);  // whose servers count; nothing: all
+  std::optional<rtps::GuidPrefix> only_
+      CULPRIT_GUARDED_BY(mutex_);                            // whose servers count; nothing: all
   std::optional<Server> proven_ CULPRIT_GUARDED_BY(mutex_);  // with a probe: the one that knows us
   std::uint64_t proof_round_ CULPRIT_GUARDED_BY(mutex_) =
       0;  // counts the times that a proof was lost
@@ -176,7 +176,7 @@ class ServiceClient {
   // Set once, with the mutex.
   std::unique_ptr<Reader> reply_reader_;
   std::unique_ptr<Writer> request_writer_;
-  Bytes probe_request_;
+  rtps::Bytes probe_request_;
   std::unique_ptr<ServiceClient> probe_;
 };
 

@@ -15,24 +15,25 @@ Mapping mapping_of(const ParticipantInfo* participant) {
                                                                            : Mapping::kInline;
 }
 
-Bytes with_header(ByteView payload, const ServiceHeader& header) {
-  const auto body = std::min(kEncapsulationSize, payload.size());
-  CdrWriter writer(payload.size() > 1 && payload[1] == 0 ? Endianness::kBig : Endianness::kLittle);
+rtps::Bytes with_header(rtps::ByteView payload, const ServiceHeader& header) {
+  const auto body = std::min(rtps::kEncapsulationSize, payload.size());
+  rtps::CdrWriter writer(payload.size() > 1 && payload[1] == 0 ? rtps::Endianness::kBig
+                                                               : rtps::Endianness::kLittle);
   writer.write(header.client);
   writer.write(header.sequence);
   writer.write_bytes(payload.subspan(body));
   return writer.take();
 }
 
-std::optional<SplitPayload> split_header(ByteView payload) {
-  CdrReader reader(payload);
+std::optional<SplitPayload> split_header(rtps::ByteView payload) {
+  rtps::CdrReader reader(payload);
   SplitPayload split;
   split.header.client = reader.read<std::uint64_t>();
   split.header.sequence = reader.read<std::int64_t>();
   if (!reader.ok()) return std::nullopt;
-  split.payload.assign(payload.begin(), payload.begin() + kEncapsulationSize);
-  split.payload.insert(split.payload.end(), payload.begin() + kEncapsulationSize + kHeaderSize,
-                       payload.end());
+  split.payload.assign(payload.begin(), payload.begin() + rtps::kEncapsulationSize);
+  split.payload.insert(split.payload.end(),
+                       payload.begin() + rtps::kEncapsulationSize + kHeaderSize, payload.end());
   return split;
 }
 
@@ -48,13 +49,14 @@ std::string_view user_data_value(std::string_view user_data, std::string_view ke
   return {};
 }
 
-std::vector<GuidPrefix> servers_among(const Matches& request_readers, const Matches& reply_writers,
-                                      const std::function<std::string_view(const Guid&)>& id_of) {
+std::vector<rtps::GuidPrefix> servers_among(
+    const Matches& request_readers, const Matches& reply_writers,
+    const std::function<std::string_view(const rtps::Guid&)>& id_of) {
   struct Newest {
     std::uint64_t reader = 0;
     std::uint64_t writer = 0;
   };
-  std::map<std::pair<GuidPrefix, std::string_view>, Newest> servers;
+  std::map<std::pair<rtps::GuidPrefix, std::string_view>, Newest> servers;
   const auto add = [&](const Matches& endpoints, std::uint64_t Newest::*which) {
     for (const auto& [endpoint, number] : endpoints) {
       std::uint64_t& newest = servers[{endpoint.prefix(), id_of(endpoint)}].*which;
@@ -63,12 +65,12 @@ std::vector<GuidPrefix> servers_among(const Matches& request_readers, const Matc
   };
   add(request_readers, &Newest::reader);
   add(reply_writers, &Newest::writer);
-  std::map<std::uint64_t, GuidPrefix> by_age;
+  std::map<std::uint64_t, rtps::GuidPrefix> by_age;
   for (const auto& [server, newest] : servers) {
     if (newest.reader != 0 && newest.writer != 0)
       by_age[std::max(newest.reader, newest.writer)] = server.first;
   }
-  std::vector<GuidPrefix> all;
+  std::vector<rtps::GuidPrefix> all;
   for (const auto& [age, participant] : by_age) all.push_back(participant);
   return all;
 }

@@ -40,13 +40,13 @@ struct ServiceHeader {
   bool operator==(const ServiceHeader&) const = default;
 };
 
-Bytes with_header(ByteView payload, const ServiceHeader& header);
+rtps::Bytes with_header(rtps::ByteView payload, const ServiceHeader& header);
 
 struct SplitPayload {
   ServiceHeader header;
-  Bytes payload;
+  rtps::Bytes payload;
 };
-std::optional<SplitPayload> split_header(ByteView payload);
+std::optional<SplitPayload> split_header(rtps::ByteView payload);
 
 // The value of `key` in an endpoint's user data, "key=value;key=value;". Empty when it is not
 // there. Cyclone marks the two endpoints of a client with one `clientid`, and those of a server
@@ -54,11 +54,12 @@ std::optional<SplitPayload> split_header(ByteView payload);
 std::string_view user_data_value(std::string_view user_data, std::string_view key);
 
 // When each endpoint matched: the how manieth it was, from 1.
-using Matches = std::map<Guid, std::uint64_t>;
+using Matches = std::map<rtps::Guid, std::uint64_t>;
 // The participants that have a server: a reader of requests and a writer of replies with the same id, which may be empty. Two
 // services of one name in one process can be distinguished only on Cyclone. The newest last. Strangers decide how many endpoints
 // there are, so each is looked at once.
-std::vector<GuidPrefix> servers_among(const Matches& request_readers, const Matches& reply_writers,
-                                      const std::function<std::string_view(const Guid&)>& id_of);
+std::vector<rtps::GuidPrefix> servers_among(
+    const Matches& request_readers, const Matches& reply_writers,
+    const std::function<std::string_view(const rtps::Guid&)>& id_of);
 
 }  // namespace culprit::ros2

@@ -18,19 +18,19 @@ TEST(ServiceMapping, FollowsTheVendor) {
 }
 
 TEST(ServiceMapping, TheHeaderStandsBetweenEncapsulationAndMessage) {
-  EXPECT_EQ(with_header(Bytes{0, 1, 0, 0, 0xaa}, {.client = 1, .sequence = 2}),
-            (Bytes{0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0xaa}));
-  EXPECT_EQ(with_header(Bytes{0, 0, 0, 0, 0xaa}, {.client = 1, .sequence = 2}),
-            (Bytes{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0xaa}));
+  EXPECT_EQ(with_header(rtps::Bytes{0, 1, 0, 0, 0xaa}, {.client = 1, .sequence = 2}),
+            (rtps::Bytes{0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0xaa}));
+  EXPECT_EQ(with_header(rtps::Bytes{0, 0, 0, 0, 0xaa}, {.client = 1, .sequence = 2}),
+            (rtps::Bytes{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0xaa}));
 }
 
 TEST(ServiceMapping, RefusesAPayloadThatIsTooShortForAHeader) {
-  EXPECT_FALSE(split_header(Bytes{}));
-  EXPECT_FALSE(split_header(Bytes{0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0}));
+  EXPECT_FALSE(split_header(rtps::Bytes{}));
+  EXPECT_FALSE(split_header(rtps::Bytes{0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0}));
 }
 
 RC_GTEST_PROP(ServiceMapping, SplitUndoesWith,
-              (Bytes body, std::uint64_t client, std::int64_t sequence)) {
+              (rtps::Bytes body, std::uint64_t client, std::int64_t sequence)) {
   body.insert(body.begin(), {0, static_cast<std::uint8_t>(*rc::gen::inRange(0, 2)), 0, 0});
   const auto split = split_header(with_header(body, {client, sequence}));
   RC_ASSERT(split.has_value());
@@ -49,8 +49,8 @@ TEST(ServiceMapping, ReadsUserData) {
 }
 
 // An endpoint of the participant with this number.
-Guid endpoint(std::uint8_t participant, std::uint16_t number) {
-  Guid guid;
+rtps::Guid endpoint(std::uint8_t participant, std::uint16_t number) {
+  rtps::Guid guid;
   guid.bytes[0] = participant;
   guid.bytes[12] = static_cast<std::uint8_t>(number >> 8);
   guid.bytes[13] = static_cast<std::uint8_t>(number);
@@ -58,13 +58,13 @@ Guid endpoint(std::uint8_t participant, std::uint16_t number) {
 }
 
 TEST(ServiceMapping, AServerHasBothEnds) {
-  const auto no_id = [](const Guid&) { return std::string_view(); };
+  const auto no_id = [](const rtps::Guid&) { return std::string_view(); };
   const Matches readers{{endpoint(1, 1), 1}, {endpoint(2, 1), 2}, {endpoint(3, 1), 3}};
   const Matches writers{{endpoint(1, 2), 5}, {endpoint(2, 2), 4}};
   EXPECT_EQ(servers_among(readers, writers, no_id),
             (std::vector{endpoint(2, 0).prefix(), endpoint(1, 0).prefix()}))
       << "the newest is the last one";
-  const auto by_number = [](const Guid& guid) {
+  const auto by_number = [](const rtps::Guid& guid) {
     return std::string_view(guid.bytes[13] == 1 ? "a" : "b");
   };
   EXPECT_TRUE(servers_among(readers, writers, by_number).empty()) << "of two servers each";
@@ -78,7 +78,7 @@ TEST(ServiceMapping, LooksAtEachOfAStrangersEndpointsOnce) {
     writers[endpoint(1, i)] = 2u * i + 2;
   }
   int looks = 0;
-  const auto id_of = [&](const Guid&) {
+  const auto id_of = [&](const rtps::Guid&) {
     ++looks;
     return std::string_view();
   };

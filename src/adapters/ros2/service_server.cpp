@@ -19,13 +19,14 @@ constexpr auto kBetweenLooks = 1ms;
 
 Expected<std::unique_ptr<ServiceServer>> ServiceServer::create(NodeEntry& node,
                                                                const ServiceName& service,
-                                                               const Qos& qos, Handler handler) {
+                                                               const rtps::Qos& qos,
+                                                               Handler handler) {
   return create_any(node, service, qos, std::move(handler), {});
 }
 
 Expected<std::unique_ptr<ServiceServer>> ServiceServer::create_slow(NodeEntry& node,
                                                                     const ServiceName& service,
-                                                                    const Qos& qos,
+                                                                    const rtps::Qos& qos,
                                                                     SlowHandler handler,
                                                                     const ServiceHashes& hashes) {
   return create_any(node, service, qos, std::move(handler), hashes);
@@ -33,7 +34,7 @@ Expected<std::unique_ptr<ServiceServer>> ServiceServer::create_slow(NodeEntry& n
 
 Expected<std::unique_ptr<ServiceServer>> ServiceServer::create_any(NodeEntry& node,
                                                                    const ServiceName& service,
-                                                                   const Qos& qos,
+                                                                   const rtps::Qos& qos,
                                                                    AnyHandler handler,
                                                                    const ServiceHashes& hashes) {
   std::unique_ptr<ServiceServer> server(new ServiceServer(node, std::move(handler), qos.depth));
@@ -51,7 +52,7 @@ ServiceServer::ServiceServer(NodeEntry& node, AnyHandler handler, std::size_t de
   late_->server = this;
 }
 
-Expected<void> ServiceServer::open(const ServiceName& service, const Qos& qos,
+Expected<void> ServiceServer::open(const ServiceName& service, const rtps::Qos& qos,
                                    const ServiceHashes& hashes) {
   if (!is_valid_topic_name(service.name))
     return Error{"'" + printable(service.name) + "' is not the name of a service"};
@@ -65,7 +66,7 @@ Expected<void> ServiceServer::open(const ServiceName& service, const Qos& qos,
                                  .type = mangle_type(Channel::kReply, service.type),
                                  .qos = qos,
                                  .user_data = id + type_user_data(hashes.response, hashes.service),
-                                 .on_match = [this](const Guid& reader, Match match) {
+                                 .on_match = [this](const rtps::Guid& reader, Match match) {
                                    tasks_.post([this, reader, match] { on_match(reader, match); });
                                  }});
   if (!writer) return Error{writer.error()};
@@ -124,7 +125,7 @@ void ServiceServer::handle_next() {
 }
 
 ServiceServer::Answer ServiceServer::answer_to(Reply reply) {
-  return [late = late_, reply = std::move(reply)](Bytes payload) {
+  return [late = late_, reply = std::move(reply)](rtps::Bytes payload) {
     const MutexLock lock(late->mutex);
     ServiceServer* const server = late->server;
     if (server == nullptr) return;
@@ -145,8 +146,8 @@ void ServiceServer::deliver(Reply reply) {
 
 std::optional<ServiceServer::Call> ServiceServer::read_inline(const Request& request) const {
   Reply reply;
-  const bool names_reader = request.related.writer != Guid{};
-  const Guid client = names_reader ? request.related.writer : request.identity.writer;
+  const bool names_reader = request.related.writer != rtps::Guid{};
+  const rtps::Guid client = names_reader ? request.related.writer : request.identity.writer;
   reply.related = {client, request.identity.sequence};
   if (client.is_reader()) reply.reader = client;
   return Call{request.payload, std::move(reply)};
@@ -157,7 +158,7 @@ std::optional<ServiceServer::Call> ServiceServer::read_header(const Request& req
   if (!split) return std::nullopt;
   Reply reply;
   reply.header = split->header;
-  const EndpointInfo* writer = node_.context().graph().endpoint(request.identity.writer);
+  const rtps::EndpointInfo* writer = node_.context().graph().endpoint(request.identity.writer);
   const auto id =
       writer == nullptr ? std::string_view() : user_data_value(writer->user_data, "clientid");
   if (!id.empty()) reply.reader = std::string(id);
@@ -166,12 +167,13 @@ std::optional<ServiceServer::Call> ServiceServer::read_header(const Request& req
 
 // Whether the reader that the reply is for has matched, as far as the client named it.
 bool ServiceServer::is_expected(const Reply& reply) const {
-  if (const auto* guid = std::get_if<Guid>(&reply.reader)) return reply_readers_.contains(*guid);
+  if (const auto* guid = std::get_if<rtps::Guid>(&reply.reader))
+    return reply_readers_.contains(*guid);
   const auto* id = std::get_if<std::string>(&reply.reader);
   if (id == nullptr) return true;
   const Graph& graph = node_.context().graph();
-  return std::ranges::any_of(reply_readers_, [&](const Guid& guid) {
-    const EndpointInfo* reader = graph.endpoint(guid);
+  return std::ranges::any_of(reply_readers_, [&](const rtps::Guid& guid) {
+    const rtps::EndpointInfo* reader = graph.endpoint(guid);
     return reader != nullptr && user_data_value(reader->user_data, "clientid") == *id;
   });
 }
@@ -218,7 +220,7 @@ void ServiceServer::send_waiting() {
   });
 }
 
-void ServiceServer::on_match(const Guid& reader, Match match) {
+void ServiceServer::on_match(const rtps::Guid& reader, Match match) {
   if (match == Match::kLost) {
     reply_readers_.erase(reader);
     return;

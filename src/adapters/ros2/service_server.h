@@ -38,11 +38,11 @@ class ServiceServer {
  public:
   // Request payload to reply payload, both with their encapsulation. An empty reply is none: the
   // request was malformed.
-  using Handler = std::function<Bytes(ByteView request)>;
+  using Handler = std::function<rtps::Bytes(rtps::ByteView request)>;
   // For a handler that needs time: the answer is given when it is there, once, from any thread. If
   // it comes after the server was destroyed, it is dropped.
-  using Answer = std::function<void(Bytes reply)>;
-  using SlowHandler = std::function<void(ByteView request, Answer answer)>;
+  using Answer = std::function<void(rtps::Bytes reply)>;
+  using SlowHandler = std::function<void(rtps::ByteView request, Answer answer)>;
   // A first reply to a client on Cyclone waits so long for the acknowledgement of its greeting (service_mapping.h): for several
   // heartbeats, since a busy computer delays them and Wi-Fi loses some. Then it is sent in any case. While a killed client does
   // not acknowledge, until its lease ends, it is unknown when a new one did.
@@ -50,32 +50,33 @@ class ServiceServer {
 
   // The node entry outlives the server.
   static Expected<std::unique_ptr<ServiceServer>> create(NodeEntry& node,
-                                                         const ServiceName& service, const Qos& qos,
-                                                         Handler handler);
+                                                         const ServiceName& service,
+                                                         const rtps::Qos& qos, Handler handler);
   static Expected<std::unique_ptr<ServiceServer>> create_slow(NodeEntry& node,
                                                               const ServiceName& service,
-                                                              const Qos& qos, SlowHandler handler,
+                                                              const rtps::Qos& qos,
+                                                              SlowHandler handler,
                                                               const ServiceHashes& hashes = {});
   ~ServiceServer();
 
  private:
   struct Request {
-    Bytes payload;
-    SampleIdentity identity;
-    SampleIdentity related;
+    rtps::Bytes payload;
+    rtps::SampleIdentity identity;
+    rtps::SampleIdentity related;
   };
   struct Reply {
-    Bytes payload;
-    SampleIdentity related;               // in the inline mapping
+    rtps::Bytes payload;
+    rtps::SampleIdentity related;         // in the inline mapping
     std::optional<ServiceHeader> header;  // in the other one
     // The client's reply reader, as far as the client named it: its GUID, or the id in its user
     // data.
-    std::variant<std::monostate, Guid, std::string> reader;
+    std::variant<std::monostate, rtps::Guid, std::string> reader;
   };
 
   // A request, apart from how it came, and a reply to it without a payload.
   struct Call {
-    Bytes request;
+    rtps::Bytes request;
     Reply reply;
   };
   // The server as late answers see it.
@@ -87,10 +88,12 @@ class ServiceServer {
   using AnyHandler = std::variant<Handler, SlowHandler>;
 
   ServiceServer(NodeEntry& node, AnyHandler handler, std::size_t depth);
-  Expected<void> open(const ServiceName& service, const Qos& qos, const ServiceHashes& hashes);
+  Expected<void> open(const ServiceName& service, const rtps::Qos& qos,
+                      const ServiceHashes& hashes);
   static Expected<std::unique_ptr<ServiceServer>> create_any(NodeEntry& node,
                                                              const ServiceName& service,
-                                                             const Qos& qos, AnyHandler handler,
+                                                             const rtps::Qos& qos,
+                                                             AnyHandler handler,
                                                              const ServiceHashes& hashes);
 
   // On the executor's thread.
@@ -104,7 +107,7 @@ class ServiceServer {
   void look_at_greeting();
   void send(const Reply& reply);
   void send_waiting();
-  void on_match(const Guid& reader, Match match);
+  void on_match(const rtps::Guid& reader, Match match);
 
   NodeEntry& node_;
   const AnyHandler handler_;
@@ -112,7 +115,7 @@ class ServiceServer {
   const std::size_t depth_;
 
   // Used by the executor's thread only.
-  std::set<Guid> reply_readers_;
+  std::set<rtps::Guid> reply_readers_;
   bool has_fresh_reader_ = false;  // one that has matched since the last greeting
   // Set while a greeting is on its way.
   std::optional<Executor::Clock::time_point> greeting_ends_;

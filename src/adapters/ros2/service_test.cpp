@@ -21,16 +21,16 @@ const ServiceName kEcho{"/a/echo", std::string(srv::ChangeMode::kType)};
 const ServiceName kProbe{"/a/probe", std::string(srv::Trigger::kType)};
 
 // Padded as it comes over the wire.
-Bytes request(const std::string& text) {
-  Bytes bytes = encode(srv::ChangeMode::Request{text});
+rtps::Bytes request(const std::string& text) {
+  rtps::Bytes bytes = rtps::encode(srv::ChangeMode::Request{text});
   bytes.resize((bytes.size() + 3) / 4 * 4);
   return bytes;
 }
-Bytes probe_request() { return encode(srv::Trigger::Request{}); }
+rtps::Bytes probe_request() { return rtps::encode(srv::Trigger::Request{}); }
 
 struct Answer {
   CallOutcome outcome;
-  Bytes reply;
+  rtps::Bytes reply;
 };
 
 // Counts what it is asked, and answers with a reply of ChangeMode, or not at all.
@@ -38,15 +38,15 @@ class Echo {
  public:
   explicit Echo(NodeEntry& node, const ServiceName& service = kEcho, bool answers = true)
       : server_(std::move(*ServiceServer::create(
-            node, service, qos::kServices, [this, answers](ByteView payload) {
+            node, service, rtps::qos::kServices, [this, answers](rtps::ByteView payload) {
               asked_.add({payload.begin(), payload.end()});
-              return answers ? Bytes(payload.begin(), payload.end()) : Bytes();
+              return answers ? rtps::Bytes(payload.begin(), payload.end()) : rtps::Bytes();
             }))) {}
 
-  EventLog<Bytes>& asked() { return asked_; }
+  rtps::EventLog<rtps::Bytes>& asked() { return asked_; }
 
  private:
-  EventLog<Bytes> asked_;
+  rtps::EventLog<rtps::Bytes> asked_;
   std::unique_ptr<ServiceServer> server_;
 };
 
@@ -64,13 +64,13 @@ std::unique_ptr<ServiceClient> client_of(Side& side, const ServiceName& service 
 
 std::unique_ptr<ServiceClient> guarded_client_of(Side& side) {
   return std::move(
-      *ServiceClient::create(side.node, kEcho, qos::kServices, {kProbe, probe_request()}));
+      *ServiceClient::create(side.node, kEcho, rtps::qos::kServices, {kProbe, probe_request()}));
 }
 
 // Calls, and gives the log that the answer comes to.
-std::unique_ptr<EventLog<Answer>> call(ServiceClient& client, const std::string& text,
-                                       Repeat repeat, Duration timeout = kPatience) {
-  auto answers = std::make_unique<EventLog<Answer>>();
+std::unique_ptr<rtps::EventLog<Answer>> call(ServiceClient& client, const std::string& text,
+                                             Repeat repeat, Duration timeout = rtps::kPatience) {
+  auto answers = std::make_unique<rtps::EventLog<Answer>>();
   client.call(request(text), repeat, timeout, [log = answers.get()](const CallResult& result) {
     log->add({result.outcome, {result.reply.begin(), result.reply.end()}});
   });
@@ -93,7 +93,7 @@ TEST(Service, AnswersACall) {
 TEST(Service, TakesAnswersOnlyOfTheParticipantThatIsMeant) {
   const TestDomain domain;
   Side stranger(domain, "stranger"), robot(domain, "robot"), manager(domain, "manager");
-  const GuidPrefix meant = robot.context->participant().guid().prefix();
+  const rtps::GuidPrefix meant = robot.context->participant().guid().prefix();
   Echo forged(stranger.node);
   const auto client = client_of(manager);
   client->ask_only(meant);
@@ -145,8 +145,8 @@ TEST(Service, ARequestThatMayRunTwiceIsRepeatedUntilItIsAnswered) {
   Side robot(domain, "robot"), manager(domain, "manager");
   int asked = 0;
   const auto server =
-      ServiceServer::create(robot.node, kEcho, qos::kServices, [&](ByteView payload) {
-        return ++asked < 3 ? Bytes() : Bytes(payload.begin(), payload.end());
+      ServiceServer::create(robot.node, kEcho, rtps::qos::kServices, [&](rtps::ByteView payload) {
+        return ++asked < 3 ? rtps::Bytes() : rtps::Bytes(payload.begin(), payload.end());
       });
   const auto client = client_of(manager);
   const auto answers = call(*client, "hello", Repeat::kUntilAnswered);
@@ -157,12 +157,12 @@ TEST(Service, ARequestThatMayRunTwiceIsRepeatedUntilItIsAnswered) {
 TEST(Service, ASlowServerIsNotAskedAgainBeforeItCanHaveAnswered) {
   const TestDomain domain;
   Side robot(domain, "robot"), manager(domain, "manager");
-  EventLog<ServiceServer::Answer> asked_first;
-  EventLog<Bytes> asked_second;
+  rtps::EventLog<ServiceServer::Answer> asked_first;
+  rtps::EventLog<rtps::Bytes> asked_second;
   const auto server = std::move(
-      *ServiceServer::create_slow(robot.node, kEcho, qos::kServices,
-                                  [&](ByteView payload, const ServiceServer::Answer& answer) {
-                                    const Bytes bytes(payload.begin(), payload.end());
+      *ServiceServer::create_slow(robot.node, kEcho, rtps::qos::kServices,
+                                  [&](rtps::ByteView payload, const ServiceServer::Answer& answer) {
+                                    const rtps::Bytes bytes(payload.begin(), payload.end());
                                     if (bytes == request("first")) return asked_first.add(answer);
                                     asked_second.add(bytes);
                                   }));
@@ -186,7 +186,7 @@ TEST(Service, EveryClientGetsItsOwnAnswers) {
   Side robot(domain, "robot"), one(domain, "one"), other(domain, "other");
   Echo echo(robot.node);
   const auto first = client_of(one), second = client_of(other), third = client_of(other);
-  std::vector<std::pair<std::string, std::unique_ptr<EventLog<Answer>>>> calls;
+  std::vector<std::pair<std::string, std::unique_ptr<rtps::EventLog<Answer>>>> calls;
   for (int i = 0; i < 20; ++i) {
     for (ServiceClient* client : {first.get(), second.get(), third.get()}) {
       const std::string text = std::to_string(calls.size());
@@ -203,10 +203,10 @@ TEST(Service, EveryClientGetsItsOwnAnswers) {
 TEST(Service, AnAnswerMayTakeItsTimeAndHoldsNobodyUp) {
   const TestDomain domain;
   Side robot(domain, "robot"), manager(domain, "manager");
-  EventLog<ServiceServer::Answer> asked;
+  rtps::EventLog<ServiceServer::Answer> asked;
   const auto server = std::move(*ServiceServer::create_slow(
-      robot.node, kEcho, qos::kServices,
-      [&](ByteView, const ServiceServer::Answer& answer) { asked.add(answer); }));
+      robot.node, kEcho, rtps::qos::kServices,
+      [&](rtps::ByteView, const ServiceServer::Answer& answer) { asked.add(answer); }));
   Echo echo(robot.node, kProbe);
   const auto slow = client_of(manager);
   const auto quick = client_of(manager, kProbe);
@@ -223,10 +223,10 @@ TEST(Service, AnAnswerMayTakeItsTimeAndHoldsNobodyUp) {
 TEST(Service, AnAnswerThatComesWhenItsServerIsGoneGoesNowhere) {
   const TestDomain domain;
   Side robot(domain, "robot"), manager(domain, "manager");
-  EventLog<ServiceServer::Answer> asked;
+  rtps::EventLog<ServiceServer::Answer> asked;
   auto server = std::move(*ServiceServer::create_slow(
-      robot.node, kEcho, qos::kServices,
-      [&](ByteView, const ServiceServer::Answer& answer) { asked.add(answer); }));
+      robot.node, kEcho, rtps::qos::kServices,
+      [&](rtps::ByteView, const ServiceServer::Answer& answer) { asked.add(answer); }));
   const auto client = client_of(manager);
   const auto answers = call(*client, "hello", Repeat::kUntilAnswered);
   ASSERT_TRUE(asked.wait_for_count(1));
@@ -241,7 +241,7 @@ TEST(Service, ItsTypesAreAnnouncedByTheirHashes) {
   const TestDomain domain;
   Side robot(domain, "robot"), manager(domain, "manager");
   const auto server = std::move(*ServiceServer::create_slow(
-      robot.node, kEcho, qos::kServices, [](ByteView, const ServiceServer::Answer&) {},
+      robot.node, kEcho, rtps::qos::kServices, [](rtps::ByteView, const ServiceServer::Answer&) {},
       {"RIHS01_aa", "RIHS01_bb", "RIHS01_cc"}));
   EXPECT_TRUE(manager.context.changes().wait_for_one([](const GraphChange& change) {
     const auto* joined = std::get_if<EndpointJoined>(&change);
@@ -371,7 +371,7 @@ TEST(Service, BadNamesAreErrors) {
   EXPECT_FALSE(ServiceClient::create(manager.node, {"relative", kEcho.type}));
   EXPECT_FALSE(ServiceClient::create(manager.node, {"/a", "no type"}));
   EXPECT_FALSE(ServiceServer::create(manager.node, {"/a b", kEcho.type}, {},
-                                     [](ByteView) { return Bytes(); }));
+                                     [](rtps::ByteView) { return rtps::Bytes(); }));
 }
 
 }  // namespace

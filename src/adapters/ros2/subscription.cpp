@@ -7,8 +7,8 @@
 namespace culprit::ros2 {
 
 Expected<std::unique_ptr<RawSubscription>> RawSubscription::create(
-    NodeEntry& node, std::string_view topic, std::string_view type, const Qos& qos, PayloadUse use,
-    SampleCallback on_sample, std::function<void()> on_unheard) {
+    NodeEntry& node, std::string_view topic, std::string_view type, const rtps::Qos& qos,
+    PayloadUse use, SampleCallback on_sample, std::function<void()> on_unheard) {
   const auto name = resolve_name(topic, node.name());
   if (!name) return Error{name.error()};
   if (!is_valid_type_name(type))
@@ -34,7 +34,7 @@ RawSubscription::RawSubscription(NodeEntry& node, ReaderOptions options, SampleC
       tell_unheard_(std::exchange(options_.on_unheard, [this] { on_unheard(); })),
       tasks_(node.context().executor()) {
   // A reliable one waits for what it lacks, and is sent it again.
-  if (options_.qos.reliability == Reliability::kReliable) options_.on_unheard = {};
+  if (options_.qos.reliability == rtps::Reliability::kReliable) options_.on_unheard = {};
 }
 
 RawSubscription::~RawSubscription() {
@@ -74,7 +74,8 @@ void RawSubscription::make_anew() {
 
 Expected<std::unique_ptr<Subscription>> Subscription::create(NodeEntry& node,
                                                              std::string_view topic,
-                                                             std::string_view type, const Qos& qos,
+                                                             std::string_view type,
+                                                             const rtps::Qos& qos,
                                                              Callback callback) {
   std::unique_ptr<Subscription> subscription(
       new Subscription(node.context().executor(), qos.depth, std::move(callback)));
@@ -104,15 +105,15 @@ void Subscription::on_sample(const Sample& sample) {
   tasks_.post([this] { deliver_next(); });
 }
 
-Bytes Subscription::take_oldest() {
-  Bytes oldest = std::move(payloads_.front());
+rtps::Bytes Subscription::take_oldest() {
+  rtps::Bytes oldest = std::move(payloads_.front());
   payloads_.pop_front();
   bytes_ -= oldest.size();
   return oldest;
 }
 
 void Subscription::deliver_next() {
-  Bytes payload;
+  rtps::Bytes payload;
   {
     const MutexLock lock(mutex_);
     if (payloads_.empty()) return;

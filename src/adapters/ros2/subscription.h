@@ -28,8 +28,9 @@ class RawSubscription {
   // `topic` as resolve_name takes it; `type` is "package/msg/Type". The node entry outlives the
   // subscription. `on_unheard` is ReaderOptions'.
   static Expected<std::unique_ptr<RawSubscription>> create(NodeEntry& node, std::string_view topic,
-                                                           std::string_view type, const Qos& qos,
-                                                           PayloadUse use, SampleCallback on_sample,
+                                                           std::string_view type,
+                                                           const rtps::Qos& qos, PayloadUse use,
+                                                           SampleCallback on_sample,
                                                            std::function<void()> on_unheard = {});
   ~RawSubscription();
   RawSubscription(const RawSubscription&) = delete;
@@ -63,11 +64,11 @@ class RawSubscription {
 // the oldest is dropped.
 class Subscription {
  public:
-  using Callback = std::function<void(ByteView payload)>;
+  using Callback = std::function<void(rtps::ByteView payload)>;
   static constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
   static Expected<std::unique_ptr<Subscription>> create(NodeEntry& node, std::string_view topic,
-                                                        std::string_view type, const Qos& qos,
+                                                        std::string_view type, const rtps::Qos& qos,
                                                         Callback callback);
   ~Subscription();
 
@@ -76,12 +77,12 @@ class Subscription {
 
   void on_sample(const Sample& sample);
   void deliver_next();
-  Bytes take_oldest() CULPRIT_REQUIRES(mutex_);
+  rtps::Bytes take_oldest() CULPRIT_REQUIRES(mutex_);
 
   const std::size_t depth_;
   const Callback callback_;
   Mutex mutex_;
-  std::deque<Bytes> payloads_ CULPRIT_GUARDED_BY(mutex_);
+  std::deque<rtps::Bytes> payloads_ CULPRIT_GUARDED_BY(mutex_);
   std::size_t bytes_ CULPRIT_GUARDED_BY(mutex_) = 0;  // of them
   TaskGroup tasks_;                                   // outlives the one that posts to it
   std::unique_ptr<RawSubscription> raw_;

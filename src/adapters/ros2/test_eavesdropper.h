@@ -29,31 +29,32 @@ class Eavesdropper {
             *Participant::create(options, [this](const DiscoveryEvent& event) { note(event); }))) {}
 
   struct Learned {
-    Guid participant;
-    Guid info_writer;  // of ros_discovery_info
-    std::vector<EndpointInfo> endpoints;
+    rtps::Guid participant;
+    rtps::Guid info_writer;  // of ros_discovery_info
+    std::vector<rtps::EndpointInfo> endpoints;
   };
   // Waits until that is known. The process has nodes.
   Learned of(int pid) {
     EXPECT_TRUE(waits_until([&] { return has(pid, 12); }));
     const std::lock_guard lock(mutex_);
-    const Guid guid = participants_[pid].guid;
+    const rtps::Guid guid = participants_[pid].guid;
     return {guid, info_writers_[guid.prefix()], endpoints_of(pid)};
   }
   // The lies that remove the node of the process.
-  std::vector<Bytes> farewells_of(int pid) {
+  std::vector<rtps::Bytes> farewells_of(int pid) {
     const Learned learned = of(pid);
-    std::vector<Guid> endpoints;
-    for (const EndpointInfo& each : learned.endpoints) endpoints.push_back(each.guid);
-    return farewells(learned.participant, endpoints, learned.info_writer,
-                     encode_discovery_info({learned.participant, {}}, GidSize::kHumbleAndOlder));
+    std::vector<rtps::Guid> endpoints;
+    for (const rtps::EndpointInfo& each : learned.endpoints) endpoints.push_back(each.guid);
+    return rtps::farewells(
+        learned.participant, endpoints, learned.info_writer,
+        encode_discovery_info({learned.participant, {}}, GidSize::kHumbleAndOlder));
   }
   // Where the process listens: for discovery, and for samples.
-  std::vector<UdpAddress> ports_of(int pid) {
+  std::vector<rtps::UdpAddress> ports_of(int pid) {
     EXPECT_TRUE(waits_until([&] { return has(pid, 1); }));
     const std::lock_guard lock(mutex_);
-    std::vector<UdpAddress> all = participants_[pid].metatraffic;
-    for (UdpAddress each : participants_[pid].metatraffic) {
+    std::vector<rtps::UdpAddress> all = participants_[pid].metatraffic;
+    for (rtps::UdpAddress each : participants_[pid].metatraffic) {
       ++each.port;
       all.push_back(each);
     }
@@ -63,7 +64,7 @@ class Eavesdropper {
  private:
   template <class Done>
   static bool waits_until(Done done) {
-    for (const Time end = later(live_now(), kPatience); !done();) {
+    for (const Time end = later(live_now(), rtps::kPatience); !done();) {
       if (live_now() > end) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -77,15 +78,15 @@ class Eavesdropper {
     const std::lock_guard lock(mutex_);
     if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
       participants_[info->pid] = *info;
-    } else if (const auto* endpoint = std::get_if<EndpointInfo>(&event)) {
+    } else if (const auto* endpoint = std::get_if<rtps::EndpointInfo>(&event)) {
       endpoints_.push_back(*endpoint);
       if (endpoint->topic == kDiscoveryInfoTopic && !endpoint->guid.is_reader())
         info_writers_[endpoint->guid.prefix()] = endpoint->guid;
     }
   }
-  std::vector<EndpointInfo> endpoints_of(int pid) {
-    std::vector<EndpointInfo> all;
-    for (const EndpointInfo& each : endpoints_) {
+  std::vector<rtps::EndpointInfo> endpoints_of(int pid) {
+    std::vector<rtps::EndpointInfo> all;
+    for (const rtps::EndpointInfo& each : endpoints_) {
       if (each.guid.prefix() == participants_[pid].guid.prefix()) all.push_back(each);
     }
     return all;
@@ -93,8 +94,8 @@ class Eavesdropper {
 
   std::mutex mutex_;
   std::map<int, ParticipantInfo> participants_;  // by process
-  std::vector<EndpointInfo> endpoints_;
-  std::map<GuidPrefix, Guid> info_writers_;
+  std::vector<rtps::EndpointInfo> endpoints_;
+  std::map<rtps::GuidPrefix, rtps::Guid> info_writers_;
   std::unique_ptr<Participant> participant_;
 };
 

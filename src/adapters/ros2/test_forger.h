@@ -33,11 +33,11 @@ class ForgingTransport final : public fast_dds::transport::ChainingTransport {
   fast_dds::transport::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
   }
-  bool send(fast_dds::rtps::SenderResource* sender, const fast_dds::rtps::octet* bytes,
-            std::uint32_t size, fast_dds::rtps::LocatorsIterator* begin,
-            fast_dds::rtps::LocatorsIterator* end,
+  bool send(fast_dds::fastrtps::SenderResource* sender, const fast_dds::fastrtps::octet* bytes,
+            std::uint32_t size, fast_dds::fastrtps::LocatorsIterator* begin,
+            fast_dds::fastrtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    std::vector<fast_dds::rtps::octet> forged(bytes, bytes + size);
+    std::vector<fast_dds::fastrtps::octet> forged(bytes, bytes + size);
     for (auto at = forged.begin();;) {
       at = std::search(at, forged.end(), decoy_.begin(), decoy_.end());
       if (at == forged.end()) break;
@@ -46,9 +46,9 @@ class ForgingTransport final : public fast_dds::transport::ChainingTransport {
     return sender->send(forged.data(), size, begin, end, timeout);
   }
   void receive(fast_dds::transport::TransportReceiverInterface* next,
-               const fast_dds::rtps::octet* bytes, std::uint32_t size,
-               const fast_dds::rtps::Locator_t& local,
-               const fast_dds::rtps::Locator_t& remote) override {
+               const fast_dds::fastrtps::octet* bytes, std::uint32_t size,
+               const fast_dds::fastrtps::Locator_t& local,
+               const fast_dds::fastrtps::Locator_t& remote) override {
     next->OnDataReceived(bytes, size, local, remote);
   }
 
@@ -112,8 +112,9 @@ class Forger {
     fast_dds::dds::TypeSupport(new fast_dds::RawType(type)).register_type(participant_);
     auto* topic = participant_->create_topic(std::string(kDiscoveryInfoTopic), type,
                                              fast_dds::dds::TopicQos());
-    writer_ = participant_->create_publisher(fast_dds::dds::PublisherQos())
-                  ->create_datawriter(topic, fast_dds::writer_qos(qos::kDiscoveryInfoWriter, ""));
+    writer_ =
+        participant_->create_publisher(fast_dds::dds::PublisherQos())
+            ->create_datawriter(topic, fast_dds::writer_qos(rtps::qos::kDiscoveryInfoWriter, ""));
   }
   ~Forger() {
     participant_->delete_contained_entities();
@@ -128,7 +129,7 @@ class Forger {
                               GidSize::kHumbleAndOlder),
         {});
   }
-  GuidPrefix prefix() const { return fast_dds::to_guid(participant_->guid()).prefix(); }
+  rtps::GuidPrefix prefix() const { return fast_dds::to_guid(participant_->guid()).prefix(); }
 
  private:
   fast_dds::dds::DomainParticipant* participant_ = nullptr;

@@ -18,7 +18,7 @@ enum class Xcdr2 : std::uint8_t { kPlain = 0x06, kDelimited = 0x08, kMembers = 0
 
 class Xcdr2Writer {
  public:
-  Xcdr2Writer(Xcdr2 form, Endianness endianness)
+  Xcdr2Writer(Xcdr2 form, rtps::Endianness endianness)
       : form_(form),
         endianness_(endianness),
         bytes_{0,
@@ -37,7 +37,7 @@ class Xcdr2Writer {
       const std::size_t alignment = sizeof(T) < 4 ? sizeof(T) : 4;
       while (bytes_.size() % alignment != 0) bytes_.push_back(0);
       auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof(T)>>(value);
-      if (endianness_ == Endianness::kBig) bytes = detail::swapped<T>(bytes);
+      if (endianness_ == rtps::Endianness::kBig) bytes = rtps::detail::swapped<T>(bytes);
       bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
     } else if constexpr (std::same_as<T, std::string>) {
       write(static_cast<std::uint32_t>(value.size() + 1));
@@ -56,7 +56,7 @@ class Xcdr2Writer {
     for (const T& element : elements) write(element);
     if (header > 0) end(header);
   }
-  Bytes take() { return std::move(bytes_); }
+  rtps::Bytes take() { return std::move(bytes_); }
 
  private:
   template <class T>
@@ -77,17 +77,18 @@ class Xcdr2Writer {
   void end(std::size_t header) {
     auto length = std::bit_cast<std::array<std::uint8_t, 4>>(
         static_cast<std::uint32_t>(bytes_.size() - header));
-    if (endianness_ == Endianness::kBig) length = detail::swapped<std::uint32_t>(length);
+    if (endianness_ == rtps::Endianness::kBig)
+      length = rtps::detail::swapped<std::uint32_t>(length);
     std::ranges::copy(length, bytes_.begin() + static_cast<std::ptrdiff_t>(header) - 4);
   }
 
   Xcdr2 form_;
-  Endianness endianness_;
-  Bytes bytes_;
+  rtps::Endianness endianness_;
+  rtps::Bytes bytes_;
 };
 
 template <class Message>
-Bytes encode_xcdr2(const Message& message, Xcdr2 form, Endianness endianness) {
+rtps::Bytes encode_xcdr2(const Message& message, Xcdr2 form, rtps::Endianness endianness) {
   Xcdr2Writer writer(form, endianness);
   writer.write(message);
   return writer.take();

@@ -8,7 +8,7 @@
 #include "rtps/for_each_submessage.h"
 #include "rtps/submessage.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 enum ParameterId : std::uint16_t {
@@ -263,8 +263,7 @@ Bytes farewell_of(const GuidPrefix& participant, std::int64_t sequence) {
   };
   append(participant.bytes);
   // A sample with inline parameters, little endian, to all readers, of the writer that announces participants.
-  append(
-      Bytes{rtps::kData, 1 | rtps::kHasParameters, 0, 0, 0, 0, 16, 0, 0, 0, 0, 0, 0, 1, 0, 0xc2});
+  append(Bytes{kData, 1 | kHasParameters, 0, 0, 0, 0, 16, 0, 0, 0, 0, 0, 0, 1, 0, 0xc2});
   for (const int half : {32, 0}) {
     for (const int byte : {0, 8, 16, 24})
       bytes.push_back(static_cast<std::uint8_t>(sequence >> (half + byte)));
@@ -273,8 +272,8 @@ Bytes farewell_of(const GuidPrefix& participant, std::int64_t sequence) {
   append(participant.bytes);
   append(kParticipant);
   append(Bytes{kPidStatusInfo, 0, 4, 0, 0, 0, 0, 3, kPidSentinel, 0, 0, 0});
-  bytes[22] = static_cast<std::uint8_t>(bytes.size() - rtps::kHeader - rtps::kSubmessageHeader);
+  bytes[22] = static_cast<std::uint8_t>(bytes.size() - kHeader - kSubmessageHeader);
   return bytes;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

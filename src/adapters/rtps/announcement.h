@@ -14,7 +14,7 @@
 #include "rtps/cdr.h"
 #include "rtps/endpoint_info.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // `payload` starts with its encapsulation. Nothing: there is no topic, or the list is damaged before it.
 std::optional<std::string_view> announced_topic(ByteView payload);
@@ -34,4 +34,4 @@ std::vector<Guid> announced_keys(ByteView parameters, Endianness order, ByteView
 // number `sequence`.
 Bytes farewell_of(const GuidPrefix& participant, std::int64_t sequence);
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

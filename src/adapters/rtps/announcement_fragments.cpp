@@ -8,7 +8,7 @@
 #include "rtps/for_each_submessage.h"
 #include "rtps/submessage.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 // Where a fragment has its fields, with its header (RTPS 2.3 §9.4.5.4).
@@ -32,9 +32,9 @@ constexpr std::size_t kSourceSize = 16;
 constexpr std::size_t kPrefixSize = 12;
 
 // Before the content of a sample: the header, INFO_DST, and the head of a DATA.
-constexpr std::size_t kInfoSize = rtps::kSubmessageHeader + kPrefixSize;
+constexpr std::size_t kInfoSize = kSubmessageHeader + kPrefixSize;
 constexpr std::size_t kDataHead = 24;
-constexpr std::size_t kPreamble = rtps::kHeader + kInfoSize + kDataHead;
+constexpr std::size_t kPreamble = kHeader + kInfoSize + kDataHead;
 
 std::uint32_t long_at(ByteView bytes, std::size_t at, bool is_little) {
   const std::uint32_t one = number_at(bytes, at, is_little);
@@ -57,12 +57,12 @@ void append(Bytes& bytes, ByteView more) { bytes.insert(bytes.end(), more.begin(
 // All that stands before the content of the sample, as one datagram, little endian.
 Bytes preamble_of(ByteView fragment, ByteView source, ByteView destination, std::uint32_t size) {
   const bool is_little = (fragment[1] & 1) != 0;
-  const std::size_t length = kDataHead - rtps::kSubmessageHeader + size;
+  const std::size_t length = kDataHead - kSubmessageHeader + size;
   Bytes bytes{'R', 'T', 'P', 'S'};
   append(bytes, source);
-  append(bytes, Bytes{rtps::kInfoDestination, 1, kPrefixSize, 0});
+  append(bytes, Bytes{kInfoDestination, 1, kPrefixSize, 0});
   append(bytes, destination);
-  append(bytes, Bytes{rtps::kData, 1 | rtps::kHasPayload, static_cast<std::uint8_t>(length),
+  append(bytes, Bytes{kData, 1 | kHasPayload, static_cast<std::uint8_t>(length),
                       static_cast<std::uint8_t>(length >> 8), 0, 0, 16, 0});
   append(bytes, fragment.subspan(field::kReader, field::kSequence - field::kReader));
   for (const std::size_t half : {field::kSequence, field::kSequence + 4}) {
@@ -90,11 +90,11 @@ std::vector<Bytes> AnnouncementFragments::take(std::span<std::uint8_t> datagram,
   ByteView source = ByteView(datagram).subspan(kSourceInHeader, kSourceSize);
   ByteView destination = kAll;
   for_each_submessage(datagram, [&](ByteView each) CULPRIT_REQUIRES(mutex_) {
-    if (each[0] == rtps::kInfoSource && each.size() >= kSourceInInfo + kSourceSize)
+    if (each[0] == kInfoSource && each.size() >= kSourceInInfo + kSourceSize)
       source = each.subspan(kSourceInInfo, kSourceSize);
-    if (each[0] == rtps::kInfoDestination && each.size() >= kInfoSize)
-      destination = each.subspan(rtps::kSubmessageHeader, kPrefixSize);
-    if (each[0] != rtps::kDataFragment || !is_announcement(each)) return;
+    if (each[0] == kInfoDestination && each.size() >= kInfoSize)
+      destination = each.subspan(kSubmessageHeader, kPrefixSize);
+    if (each[0] != kDataFragment || !is_announcement(each)) return;
     if (const auto head = read_head(each)) {
       auto sample = add(preamble_of(each, source, destination, head->size), *head, from);
       if (sample) whole.push_back(std::move(*sample));
@@ -117,8 +117,7 @@ std::optional<AnnouncementFragments::Head> AnnouncementFragments::read_head(Byte
       head.size > kLargest)
     return std::nullopt;
   ByteView rest = fragment.subspan(begin);
-  if ((fragment[1] & rtps::kHasParameters) != 0)
-    rest = rest.subspan(size_of_parameters(rest, is_little));
+  if ((fragment[1] & kHasParameters) != 0) rest = rest.subspan(size_of_parameters(rest, is_little));
   const std::size_t end = std::min<std::size_t>(
       head.size, (std::size_t{head.first} - 1 + head.count) * head.fragment_size);
   const std::size_t all = (head.size + head.fragment_size - 1) / head.fragment_size;
@@ -163,4 +162,4 @@ AnnouncementFragments::Sample& AnnouncementFragments::sample_of(Bytes preamble, 
       Sample{from, std::move(preamble), head.fragment_size, std::vector<bool>(all), all});
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

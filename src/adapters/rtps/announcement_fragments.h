@@ -19,7 +19,7 @@
 #include "rtps/cdr.h"
 #include "rtps/datagram_sources.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // All members may be called from any thread.
 class AnnouncementFragments {
@@ -64,4 +64,4 @@ class AnnouncementFragments {
   std::deque<Sample> samples_ CULPRIT_GUARDED_BY(mutex_);  // oldest first
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

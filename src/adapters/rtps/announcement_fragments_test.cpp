@@ -6,7 +6,7 @@
 #include "rtps/claims.h"
 #include "rtps/test_datagram.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 using testing::ElementsAre;
@@ -128,4 +128,4 @@ TEST_F(Fragments, ThatAreDamagedOrTooLargeAreDropped) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -4,7 +4,7 @@
 
 #include "rtps/test_datagram.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 using namespace std::chrono_literals;
@@ -151,4 +151,4 @@ TEST(Announcement, AFarewellIsThatOfFastDds) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -54,7 +54,7 @@
 #include "rtps/stuck_requests.h"
 #include "rtps/udp_sockets.h"
 
-namespace culprit::ros2::fast_dds {
+namespace culprit::rtps {
 
 // The number of participants of one machine that get announcements, as in ROS 2 Iron and newer.
 inline constexpr std::uint32_t kAnnouncedTo = 32;
@@ -419,4 +419,4 @@ struct CarefulTransportDescriptor final : eprosima::fastdds::rtps::ChainingTrans
   const std::uint32_t domain;
 };
 
-}  // namespace culprit::ros2::fast_dds
+}  // namespace culprit::rtps

@@ -2,7 +2,7 @@
 
 #include "base/invariant.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // The two numberings of XCDR2 are those of RTPS 2.5 and of DDS-XTypes 1.3; each is even for big endian.
 CdrReader::CdrReader(ByteView payload) {
@@ -93,4 +93,4 @@ void CdrWriter::write_bytes(ByteView bytes) {
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -38,7 +38,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
@@ -278,4 +278,4 @@ void CdrWriter::write_from(const T& field) {
   }
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

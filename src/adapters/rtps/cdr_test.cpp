@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 // One field of every kind that messages are made of.
@@ -187,4 +187,4 @@ RC_GTEST_PROP(Cdr, EveryCutPayloadIsRefused, ()) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

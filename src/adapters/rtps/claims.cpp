@@ -9,7 +9,7 @@
 #include "rtps/speakers.h"
 #include "rtps/submessage.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 using Entity = std::array<std::uint8_t, 4>;
@@ -34,7 +34,7 @@ void add_keys(ByteView sample, const GuidPrefix& sender, std::vector<GuidPrefix>
   if (begin > sample.size()) return;
   ByteView rest = sample.subspan(begin);
   ByteView parameters;
-  if ((sample[1] & rtps::kHasParameters) != 0) {
+  if ((sample[1] & kHasParameters) != 0) {
     parameters = rest.first(size_of_parameters(rest, is_little));
     rest = rest.subspan(parameters.size());
   }
@@ -50,14 +50,14 @@ void add_keys(ByteView sample, const GuidPrefix& sender, std::vector<GuidPrefix>
 }  // namespace
 
 std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram) {
-  constexpr std::size_t kPrefixInInfoSource = rtps::kSubmessageHeader + 8;
+  constexpr std::size_t kPrefixInInfoSource = kSubmessageHeader + 8;
   std::vector<GuidPrefix> others;
   std::optional<GuidPrefix> sender;
   for_each_submessage(datagram, [&](ByteView each) {
     if (!sender) sender = prefix_at(datagram, kPrefixInHeader);
-    if (each[0] == rtps::kInfoSource && each.size() >= kPrefixInInfoSource + sender->bytes.size())
+    if (each[0] == kInfoSource && each.size() >= kPrefixInInfoSource + sender->bytes.size())
       sender = prefix_at(each, kPrefixInInfoSource);
-    if (each[0] == rtps::kData || each[0] == rtps::kDataFragment) add_keys(each, *sender, others);
+    if (each[0] == kData || each[0] == kDataFragment) add_keys(each, *sender, others);
   });
   return others;
 }
@@ -78,7 +78,7 @@ bool has_too_many_speakers(std::span<const std::uint8_t> datagram) {
 bool introduces(std::span<const std::uint8_t> datagram) {
   bool does = false;
   for_each_submessage(datagram, [&](ByteView each) {
-    if ((each[0] != rtps::kData && each[0] != rtps::kDataFragment) || each.size() < kLeast) return;
+    if ((each[0] != kData && each[0] != kDataFragment) || each.size() < kLeast) return;
     const auto is_writer = [&](const Entity& entity) {
       return std::equal(entity.begin(), entity.end(), each.begin() + kWriter);
     };
@@ -91,12 +91,12 @@ bool acknowledges(std::span<const std::uint8_t> datagram, const GuidPrefix& self
   bool is_for_self = false;
   bool does = false;
   for_each_submessage(datagram, [&](ByteView each) {
-    if (each[0] == rtps::kInfoDestination)
-      is_for_self = each.size() >= rtps::kSubmessageHeader + self.bytes.size() &&
-                    prefix_at(each, rtps::kSubmessageHeader) == self;
-    does = does || (is_for_self && each[0] == rtps::kAckNack);
+    if (each[0] == kInfoDestination)
+      is_for_self = each.size() >= kSubmessageHeader + self.bytes.size() &&
+                    prefix_at(each, kSubmessageHeader) == self;
+    does = does || (is_for_self && each[0] == kAckNack);
   });
   return does;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -11,7 +11,7 @@
 
 #include "rtps/guid.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // The participants, each once, whose keys are in the datagram's discovery data and that are not its sender: at most
 // kMostOthers, and one more if there are more. It cannot see into encrypted data. Announcements in fragments are put together
@@ -36,4 +36,4 @@ bool introduces(std::span<const std::uint8_t> datagram);
 // participants owe one another from their discovery on.
 bool acknowledges(std::span<const std::uint8_t> datagram, const GuidPrefix& self);
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

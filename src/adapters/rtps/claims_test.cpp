@@ -5,7 +5,7 @@
 
 #include "rtps/test_datagram.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 using testing::ElementsAre;
@@ -145,4 +145,4 @@ TEST(Claims, OfEveryCutOfADatagramAreRead) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

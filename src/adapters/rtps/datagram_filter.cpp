@@ -11,7 +11,7 @@
 #include "rtps/submessage.h"
 #include "rtps/submessage_reader.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 constexpr std::size_t kMostFragments = 1 << 16;
@@ -21,7 +21,7 @@ constexpr std::size_t kKey = 16;  // bytes
 constexpr std::size_t kGapSize = 32;
 
 bool is_header(ByteView datagram) {
-  return datagram.size() >= rtps::kHeader && std::memcmp(datagram.data(), "RTPS", 4) == 0 &&
+  return datagram.size() >= kHeader && std::memcmp(datagram.data(), "RTPS", 4) == 0 &&
          datagram[4] == 2;
 }
 
@@ -48,11 +48,11 @@ struct Extent {
 };
 // The submessage is at the beginning of `rest`, the rest of its datagram.
 Extent extent_of(ByteView rest) {
-  if (rest.size() < rtps::kSubmessageHeader) return {0, true, "a submessage is cut"};
-  const std::size_t room = rest.size() - rtps::kSubmessageHeader;
+  if (rest.size() < kSubmessageHeader) return {0, true, "a submessage is cut"};
+  const std::size_t room = rest.size() - kSubmessageHeader;
   const std::size_t length =
       (rest[1] & 1) != 0 ? rest[2] | (rest[3] << 8) : (rest[2] << 8) | rest[3];
-  if (length == 0 && rest[0] != rtps::kPad && rest[0] != rtps::kInfoTime) return {room, true};
+  if (length == 0 && rest[0] != kPad && rest[0] != kInfoTime) return {room, true};
   if (length > room) return {length, true, "a submessage is longer than its datagram"};
   return {length};
 }
@@ -82,16 +82,16 @@ ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_poin
 
 // An INFO submessage says from whom, to whom and when the submessages after it are.
 void DatagramFilter::follow(std::span<std::uint8_t> submessage, ByteView body, Course& course) {
-  if (submessage[0] == rtps::kInfoSource) {
+  if (submessage[0] == kInfoSource) {
     CULPRIT_ASSERT(body.size() >= 8 + course.source.bytes.size());
     std::copy_n(body.data() + 8, course.source.bytes.size(), course.source.bytes.begin());
     course.sent.reset();
   }
-  if (submessage[0] == rtps::kInfoDestination) {
+  if (submessage[0] == kInfoDestination) {
     CULPRIT_ASSERT(body.size() >= course.destination.bytes.size());
     std::copy_n(body.data(), course.destination.bytes.size(), course.destination.bytes.begin());
   }
-  if (submessage[0] == rtps::kInfoTime)
+  if (submessage[0] == kInfoTime)
     course.sent = SubmessageReader(submessage, body, course.source).read_time();
 }
 
@@ -109,22 +109,22 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
   bool has_wanted = false;
   Gap gap{};
   std::size_t end = datagram.size();
-  for (std::size_t at = rtps::kHeader; at < end;) {
+  for (std::size_t at = kHeader; at < end;) {
     const std::span<std::uint8_t> rest = datagram.subspan(at, end - at);
     auto [length, is_last, objection] = extent_of(rest);
     if (objection == nullptr) {
-      const ByteView body = rest.subspan(rtps::kSubmessageHeader, length);
+      const ByteView body = rest.subspan(kSubmessageHeader, length);
       objection = this->objection(SubmessageReader(rest, body, course.source), now);
       if (objection == nullptr) follow(rest, body, course);
     }
     if (objection != nullptr) refused_ = {refused_.count + 1, objection};
-    const std::size_t size = rtps::kSubmessageHeader + length;
+    const std::size_t size = kSubmessageHeader + length;
     Announcement announcement = Announcement::kOfMiddleware;
-    if (objection == nullptr && discovery_ != nullptr && rest[0] == rtps::kData)
+    if (objection == nullptr && discovery_ != nullptr && rest[0] == kData)
       announcement = take(rest.first(size), course, gap);
     const bool is_passed = objection == nullptr && announcement != Announcement::kInGapBefore &&
                            (!addresses || address(rest.first(size), course, now));
-    has_wanted = has_wanted || (is_passed && !rtps::is_about_others(rest[0]));
+    has_wanted = has_wanted || (is_passed && !is_about_others(rest[0]));
     has_unwanted = has_unwanted || (objection == nullptr && !is_passed);
     if (!is_passed) {
       // A submessage without a length of its own, or with a false one, is cut off; the rest becomes
@@ -133,9 +133,9 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
         end = at;
         break;
       }
-      rest[0] = rtps::kPad;
+      rest[0] = kPad;
     }
-    const std::size_t next = at + rtps::kSubmessageHeader + ((length + 3) & ~std::size_t{3});
+    const std::size_t next = at + kSubmessageHeader + ((length + 3) & ~std::size_t{3});
     if (announcement == Announcement::kGap) {
       // It is shorter than what was there.
       if (is_last || next >= end) {
@@ -146,7 +146,7 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
     }
     at = next;
   }
-  if (end <= rtps::kHeader && datagram.size() > rtps::kHeader) return {};
+  if (end <= kHeader && datagram.size() > kHeader) return {};
   if (has_unwanted && !has_wanted) return {};
   CULPRIT_ASSERT(end <= datagram.size());
   return datagram.first(end);
@@ -168,9 +168,9 @@ DatagramFilter::Announcement DatagramFilter::take(std::span<std::uint8_t> submes
   const bool is_for_us =
       course.destination == GuidPrefix{} || course.destination == discovery_->self;
   if (!is_for_us || course.source == discovery_->self || !participants_.contains(course.source) ||
-      submessage.size() < kGapSize + 2 * rtps::kSubmessageHeader)
+      submessage.size() < kGapSize + 2 * kSubmessageHeader)
     return Announcement::kOfMiddleware;
-  SubmessageReader body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
+  SubmessageReader body(submessage, submessage.subspan(kSubmessageHeader), course.source);
   if (!tell_of_announcement(body)) return Announcement::kOfMiddleware;
   const SubmessageReader::Sample sample = body.read_sample();
   CULPRIT_ASSERT(body.ok());  // a gap with another number would hide what was never received
@@ -188,9 +188,9 @@ DatagramFilter::Announcement DatagramFilter::take(std::span<std::uint8_t> submes
   // Its reader and writer move to the front; then the beginning of the gap, the number that follows
   // it, and an empty bitmap.
   std::copy_n(submessage.begin() + 8, 8, submessage.begin() + 4);
-  submessage[0] = rtps::kGap;
+  submessage[0] = kGap;
   submessage[1] &= 1;
-  submessage[is_little ? 2 : 3] = kGapSize - rtps::kSubmessageHeader;
+  submessage[is_little ? 2 : 3] = kGapSize - kSubmessageHeader;
   submessage[is_little ? 3 : 2] = 0;
   write(submessage.subspan(12, 8), sample.sequence, is_little);
   write(submessage.subspan(20, 8), sample.sequence + 1, is_little);
@@ -208,7 +208,7 @@ bool DatagramFilter::tell_of_announcement(const SubmessageReader& submessage) {
   const std::span<const std::uint8_t> announcer(sample.writer.bytes.data() + 12, 4);
   const bool is_of_writers = std::ranges::equal(announcer, kOfWriters);
   if (!is_of_writers && !std::ranges::equal(announcer, kOfReaders)) return false;
-  if ((body.flags & rtps::kHasPayload) == 0) {
+  if ((body.flags & kHasPayload) == 0) {
     const auto ended = read_end(sample.parameters, body.order(), body.rest());
     if (!ended) return false;
     const auto known = announced_.find(*ended);
@@ -237,15 +237,15 @@ bool DatagramFilter::tell_of_announcement(const SubmessageReader& submessage) {
 bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& course,
                              Clock::time_point now) {
   const std::uint8_t kind = submessage[0];
-  const bool is_sample = kind == rtps::kData || kind == rtps::kDataFragment;
-  const bool is_of_writer = is_sample || kind == rtps::kHeartbeat || kind == rtps::kGap ||
-                            kind == rtps::kHeartbeatFragment;
+  const bool is_sample = kind == kData || kind == kDataFragment;
+  const bool is_of_writer =
+      is_sample || kind == kHeartbeat || kind == kGap || kind == kHeartbeatFragment;
   if (!is_of_writer) return true;
-  const std::size_t reader = rtps::kSubmessageHeader + (is_sample ? 4 : 0);
+  const std::size_t reader = kSubmessageHeader + (is_sample ? 4 : 0);
   CULPRIT_ASSERT(submessage.size() >= reader + 8);  // it passed all checks
   const std::span<std::uint8_t, 4> to{submessage.data() + reader, 4};
   const bool is_addressed = std::ranges::any_of(to, [](std::uint8_t byte) { return byte != 0; });
-  if (is_addressed && kind != rtps::kData) return true;
+  if (is_addressed && kind != kData) return true;
   Guid writer;
   std::ranges::copy(course.source.bytes, writer.bytes.begin());
   std::copy_n(to.data() + 4, 4, writer.bytes.begin() + 12);
@@ -261,7 +261,7 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& c
   }
   if (only == nullptr) return is_addressed;
   std::copy_n(only->guid.bytes.begin() + 12, 4, to.begin());
-  if (kind != rtps::kData) return true;
+  if (kind != kData) return true;
   const std::size_t before = handed_.size();
   if (!hand_over(*only, submessage, course)) return true;
   if (handed_.size() > before) found->second.unheard = 0;
@@ -274,11 +274,10 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& c
 bool DatagramFilter::hand_over(Readers::Reader& reader, std::span<const std::uint8_t> submessage,
                                const Course& course) {
   constexpr std::uint8_t kMeaning = 0x1e;  // of the flags: all but the order of bytes
-  if (!reader.on_whole || !course.sent || (submessage[1] & kMeaning) != rtps::kHasPayload)
-    return false;
+  if (!reader.on_whole || !course.sent || (submessage[1] & kMeaning) != kHasPayload) return false;
   if (course.destination != GuidPrefix{} && course.destination != reader.guid.prefix())
     return false;
-  SubmessageReader body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
+  SubmessageReader body(submessage, submessage.subspan(kSubmessageHeader), course.source);
   const SubmessageReader::Sample sample = body.read_sample();
   CULPRIT_ASSERT(body.ok());                        // it passed all checks: its lengths fit
   if (sample.sequence <= reader.last) return true;  // best effort readers pass over what is older
@@ -299,32 +298,32 @@ bool DatagramFilter::tries(const Guid& stranger, Clock::time_point now) {
 const char* DatagramFilter::objection(const SubmessageReader& submessage, Clock::time_point now) {
   SubmessageReader body = submessage;
   switch (submessage.kind) {
-    case rtps::kData:
+    case kData:
       return objection_to_data(submessage, now);
-    case rtps::kDataFragment:
+    case kDataFragment:
       return objection_to_fragment(submessage, now);
-    case rtps::kHeartbeat:
+    case kHeartbeat:
       return objection_to_heartbeat(submessage, now);
-    case rtps::kGap:
+    case kGap:
       return objection_to_gap(submessage, now);
-    case rtps::kAckNack:
-    case rtps::kNackFragment: {
+    case kAckNack:
+    case kNackFragment: {
       body.skip(8);
       const std::int64_t base = body.read_sequence();
       // The fragments of a sample have shorter numbers.
-      if (submessage.kind == rtps::kNackFragment) body.skip(4);
+      if (submessage.kind == kNackFragment) body.skip(4);
       if (base < 0 || base > kFirst) return "an acknowledgement of data that was never written";
       if (!body.skip_bitmap() || body.left() < 4) return "a damaged acknowledgement";
       return nullptr;
     }
-    case rtps::kHeartbeatFragment:
+    case kHeartbeatFragment:
       body.skip(24);
       return body.ok() ? nullptr : "a damaged heartbeat";
-    case rtps::kInfoSource:
+    case kInfoSource:
       return submessage.size() == 20 ? nullptr : "a damaged source";
-    case rtps::kInfoDestination:
+    case kInfoDestination:
       return submessage.size() >= 12 ? nullptr : "a damaged destination";
-    case rtps::kInfoTime:
+    case kInfoTime:
       return (submessage.flags & 2) != 0 || submessage.size() >= 8 ? nullptr : "a damaged time";
     default:
       return nullptr;
@@ -336,8 +335,8 @@ const char* DatagramFilter::objection_to_data(const SubmessageReader& submessage
   constexpr const char* kDamaged = "a damaged sample";
   SubmessageReader body = submessage;
   const SubmessageReader::Sample sample = body.read_sample();
-  const bool has_payload = (body.flags & rtps::kHasPayload) != 0;
-  const bool has_key = (body.flags & rtps::kHasKey) != 0;
+  const bool has_payload = (body.flags & kHasPayload) != 0;
+  const bool has_key = (body.flags & kHasKey) != 0;
   if (!body.ok() || (has_payload && has_key)) return kDamaged;
   if ((has_payload || has_key) && body.left() < kEncapsulationSize) return kDamaged;
   // Fast DDS takes so few bytes as the key itself: those of another participant, which nobody has compared. Participants
@@ -516,4 +515,4 @@ DatagramFilter::Refused DatagramFilter::refused() const {
   return refused_;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

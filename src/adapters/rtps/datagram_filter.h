@@ -53,7 +53,7 @@
 #include "rtps/system_time.h"
 #include "rtps/writer_records.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // All members may be called from any thread.
 class DatagramFilter {
@@ -230,4 +230,4 @@ class DatagramFilter {
   std::vector<EndpointNews> news_ CULPRIT_GUARDED_BY(mutex_);
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

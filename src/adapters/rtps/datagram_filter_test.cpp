@@ -10,7 +10,7 @@
 
 #include "rtps/test_datagram.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 using namespace std::chrono_literals;
@@ -692,4 +692,4 @@ TEST_F(DiscoveringFilter, NoMoreAreKeptThanIsAllowed) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

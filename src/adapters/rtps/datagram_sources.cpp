@@ -6,16 +6,16 @@
 #include "rtps/speakers.h"
 #include "rtps/submessage.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 // Where a sample has its writer (RTPS 2.3 §9.4.5.3), and which announces a participant (§9.3.1.3).
-constexpr std::size_t kWriterInData = rtps::kSubmessageHeader + 8;
+constexpr std::size_t kWriterInData = kSubmessageHeader + 8;
 constexpr std::array<std::uint8_t, 4> kAnnouncesParticipant = {0x00, 0x01, 0x00, 0xc2};
 constexpr std::uint8_t kOfVendor = 0x80;  // these and higher kinds are a vendor's own (§8.3.3.2)
 
 bool announces_participant(std::span<const std::uint8_t> data) {
-  return (data[1] & (rtps::kHasPayload | rtps::kHasKey)) == rtps::kHasPayload &&
+  return (data[1] & (kHasPayload | kHasKey)) == kHasPayload &&
          data.size() >= kWriterInData + kAnnouncesParticipant.size() &&
          std::equal(kAnnouncesParticipant.begin(), kAnnouncesParticipant.end(),
                     data.begin() + kWriterInData);
@@ -23,11 +23,11 @@ bool announces_participant(std::span<const std::uint8_t> data) {
 
 // The size of the submessage that `bytes` begin with, with its header; nothing: it is not whole.
 std::optional<std::size_t> size_of_submessage(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < rtps::kSubmessageHeader) return std::nullopt;
+  if (bytes.size() < kSubmessageHeader) return std::nullopt;
   const bool is_little = (bytes[1] & 1) != 0;
   const std::size_t length = std::size_t{bytes[is_little ? 3 : 2]} << 8 | bytes[is_little ? 2 : 3];
-  const bool reaches_the_end = length == 0 && bytes[0] != rtps::kPad && bytes[0] != rtps::kInfoTime;
-  const std::size_t size = reaches_the_end ? bytes.size() : rtps::kSubmessageHeader + length;
+  const bool reaches_the_end = length == 0 && bytes[0] != kPad && bytes[0] != kInfoTime;
+  const std::size_t size = reaches_the_end ? bytes.size() : kSubmessageHeader + length;
   return size > bytes.size() ? std::nullopt : std::optional(size);
 }
 
@@ -51,14 +51,13 @@ void DatagramSources::heard(std::span<const std::uint8_t> datagram, const UdpAdd
 bool DatagramSources::is_still_there(std::span<const std::uint8_t> datagram) const {
   if (!is_rtps(datagram)) return false;
   std::size_t announced = 0;
-  for (auto rest = datagram.subspan(rtps::kHeader); !rest.empty();) {
+  for (auto rest = datagram.subspan(kHeader); !rest.empty();) {
     const auto size = size_of_submessage(rest);
     if (!size) return false;
     const std::uint8_t kind = rest[0];
-    if (kind == rtps::kData && announces_participant(rest.first(*size))) {
+    if (kind == kData && announces_participant(rest.first(*size))) {
       ++announced;
-    } else if (kind != rtps::kPad && kind != rtps::kInfoTime && kind != rtps::kInfoDestination &&
-               kind < kOfVendor) {
+    } else if (kind != kPad && kind != kInfoTime && kind != kInfoDestination && kind < kOfVendor) {
       return false;
     }
     rest = rest.subspan(*size);
@@ -118,7 +117,7 @@ void DatagramSources::begin(const GuidPrefix& self) {
 
 void DatagramSources::came_through(std::span<const std::uint8_t> datagram, std::uint16_t port,
                                    Time now) {
-  if (datagram.size() < rtps::kHeader) return;
+  if (datagram.size() < kHeader) return;
   const MutexLock lock(mutex_);
   if (self_ != prefix_at(datagram, kPrefixInHeader)) return;
   const auto found = std::find_if(ports_.begin(), ports_.end(),
@@ -157,4 +156,4 @@ DatagramSources::Origin DatagramSources::of(const GuidPrefix& participant) const
   return {found->second.addresses, !found->second.has_more};
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -29,7 +29,7 @@
 #include "base/time.h"
 #include "rtps/guid.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 using Ip = std::array<std::uint8_t, 4>;
 
@@ -101,4 +101,4 @@ class DatagramSources {
       CULPRIT_GUARDED_BY(mutex_);  // when datagrams of our own came through last
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -8,7 +8,7 @@
 
 #include "rtps/test_datagram.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 using testing::ElementsAre;
@@ -194,4 +194,4 @@ TEST(DatagramSources, TellSinceWhenNothingOfOurOwnCameThroughAPort) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -10,7 +10,7 @@
 #include "rtps/guid.h"
 #include "rtps/qos.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 enum class EndpointRole : std::uint8_t { kReader, kWriter };
 
@@ -37,4 +37,4 @@ using EndpointNews = std::variant<EndpointInfo, EndpointGone>;
 inline constexpr std::size_t kLongestSaid = 1024;
 inline constexpr std::size_t kMostPartitions = 32;
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -12,7 +12,7 @@
 #include "rtps/speakers.h"
 #include "rtps/submessage.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 inline std::uint16_t number_at(ByteView bytes, std::size_t at, bool is_little) {
   return static_cast<std::uint16_t>(is_little ? bytes[at] | bytes[at + 1] << 8
@@ -32,9 +32,9 @@ inline std::size_t size_of_parameters(ByteView bytes, bool is_little) {
 
 // Puts padding in the place of a submessage, which may have had no length of its own.
 inline void pad(std::span<std::uint8_t> place) {
-  CULPRIT_ASSERT(place.size() >= rtps::kSubmessageHeader);
-  const std::size_t length = place.size() - rtps::kSubmessageHeader;
-  place[0] = rtps::kPad;
+  CULPRIT_ASSERT(place.size() >= kSubmessageHeader);
+  const std::size_t length = place.size() - kSubmessageHeader;
+  place[0] = kPad;
   place[1] = 1;  // little endian
   place[2] = static_cast<std::uint8_t>(length);
   place[3] = static_cast<std::uint8_t>(length >> 8);
@@ -45,14 +45,14 @@ inline void pad(std::span<std::uint8_t> place) {
 template <class Found>
 void for_each_submessage(ByteView datagram, Found found) CULPRIT_NOT_ANALYZED {
   if (!is_rtps(datagram)) return;
-  for (ByteView rest = datagram.subspan(rtps::kHeader); rest.size() >= rtps::kSubmessageHeader;) {
+  for (ByteView rest = datagram.subspan(kHeader); rest.size() >= kSubmessageHeader;) {
     const std::size_t length = number_at(rest, 2, (rest[1] & 1) != 0);
-    const bool is_last = length == 0 && rest[0] != rtps::kPad && rest[0] != rtps::kInfoTime;
-    const std::size_t size = is_last ? rest.size() : rtps::kSubmessageHeader + length;
+    const bool is_last = length == 0 && rest[0] != kPad && rest[0] != kInfoTime;
+    const std::size_t size = is_last ? rest.size() : kSubmessageHeader + length;
     if (size > rest.size()) return;
     found(rest.first(size));
     rest = rest.subspan(std::min(rest.size(), (size + 3) & ~std::size_t{3}));
   }
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

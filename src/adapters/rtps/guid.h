@@ -8,7 +8,7 @@
 #include <cstring>
 #include <functional>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // Identifies a participant: one per process and DDS domain, as a rule, and new with each start of
 // it.
@@ -49,26 +49,26 @@ constexpr std::size_t hash_of(std::uint64_t first, std::uint64_t rest) {
   return product ^ product >> 32;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps
 
 template <>
-struct std::hash<culprit::ros2::GuidPrefix> {
-  std::size_t operator()(const culprit::ros2::GuidPrefix& prefix) const noexcept {
+struct std::hash<culprit::rtps::GuidPrefix> {
+  std::size_t operator()(const culprit::rtps::GuidPrefix& prefix) const noexcept {
     std::uint64_t first = 0;
     std::uint32_t rest = 0;
     std::memcpy(&first, prefix.bytes.data(), sizeof first);
     std::memcpy(&rest, prefix.bytes.data() + sizeof first, sizeof rest);
-    return culprit::ros2::hash_of(first, rest);
+    return culprit::rtps::hash_of(first, rest);
   }
 };
 
 template <>
-struct std::hash<culprit::ros2::Guid> {
-  std::size_t operator()(const culprit::ros2::Guid& guid) const noexcept {
+struct std::hash<culprit::rtps::Guid> {
+  std::size_t operator()(const culprit::rtps::Guid& guid) const noexcept {
     std::uint64_t first = 0;
     std::uint64_t rest = 0;
     std::memcpy(&first, guid.bytes.data(), sizeof first);
     std::memcpy(&rest, guid.bytes.data() + sizeof first, sizeof rest);
-    return culprit::ros2::hash_of(first, rest);
+    return culprit::rtps::hash_of(first, rest);
   }
 };

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 enum class Haste : std::uint8_t { kNow, kSoon };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

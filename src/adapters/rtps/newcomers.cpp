@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 std::size_t Newcomers::Hash::operator()(const UdpAddress& address) const {
   std::uint64_t all = address.port;
@@ -52,4 +52,4 @@ void Newcomers::Sources::note(Time* until, Time now) const {
   if (until != nullptr) *until = later(std::max(*until, now), each_);
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -19,7 +19,7 @@
 #include "rtps/datagram_sources.h"
 #include "rtps/guid.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 class Newcomers {
  public:
@@ -63,4 +63,4 @@ class Newcomers {
   Sources computers_ CULPRIT_GUARDED_BY(mutex_){kAtOnceOfComputer, kEachOfComputer};  // port 0
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

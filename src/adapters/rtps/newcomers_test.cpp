@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 using namespace std::chrono_literals;
@@ -66,4 +66,4 @@ TEST(Newcomers, OfMoreSourcesThanAreCountedAreNotKeptOut) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

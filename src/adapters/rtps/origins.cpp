@@ -11,7 +11,7 @@
 #include "rtps/speakers.h"
 #include "rtps/udp_sockets.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 bool overlap(const Ip& one, const Ip& other) {
@@ -326,4 +326,4 @@ std::vector<ForeignSource> Origins::new_sources() {
   return all;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -49,7 +49,7 @@
 #include "rtps/own_addresses.h"
 #include "rtps/udp_sockets.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // A source of datagrams in another participant's name, or about another participant.
 struct ForeignSource {
@@ -182,4 +182,4 @@ class Origins {
   std::size_t told_ CULPRIT_GUARDED_BY(mutex_) = 0;                // of them
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -13,7 +13,7 @@
 #include "rtps/test_datagram.h"
 #include "rtps/test_sockets.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -414,4 +414,4 @@ TEST(Origins, AreThoseOfTheKernel) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

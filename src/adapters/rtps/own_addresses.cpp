@@ -5,7 +5,7 @@
 #include <memory>
 #include <netinet/in.h>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 std::set<std::array<std::uint8_t, 4>> own_addresses() {
   std::set<std::array<std::uint8_t, 4>> own{{127, 0, 0, 1}};
@@ -22,4 +22,4 @@ std::set<std::array<std::uint8_t, 4>> own_addresses() {
   return own;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

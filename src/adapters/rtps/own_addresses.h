@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <set>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // IPv4, of all interfaces that have one. Only 127.0.0.1 if the system lists none.
 std::set<std::array<std::uint8_t, 4>> own_addresses();
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

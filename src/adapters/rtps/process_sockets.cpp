@@ -4,7 +4,7 @@
 #include <sstream>
 #include <system_error>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 namespace fs = std::filesystem;
 
@@ -38,4 +38,4 @@ std::optional<std::uint64_t> running_since(const fs::path& process) {
   return ticks;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

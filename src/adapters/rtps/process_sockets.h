@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // The targets of its open files: "socket:[12345]". Nothing: there is no such process, or its files
 // are not readable. A process that is just ending may have closed them already.
@@ -19,4 +19,4 @@ std::optional<std::set<std::string>> descriptors_of(const std::filesystem::path&
 // ended and was not reaped.
 std::optional<std::uint64_t> running_since(const std::filesystem::path& process);
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -10,7 +10,7 @@
 
 #include "base/units.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 enum class Reliability : std::uint8_t { kBestEffort, kReliable };
 enum class Durability : std::uint8_t { kVolatile, kTransientLocal };
@@ -56,4 +56,4 @@ inline constexpr Qos kDiscoveryInfoReader{.durability = Durability::kTransientLo
 
 }  // namespace qos
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

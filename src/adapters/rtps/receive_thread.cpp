@@ -13,7 +13,7 @@
 
 #include "base/invariant.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 constexpr std::uint32_t kReadable = EPOLLIN;
@@ -429,4 +429,4 @@ void ReceiveThread::calm(Clock::time_point now) {
   }
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -40,7 +40,7 @@
 #include "rtps/haste.h"
 #include "rtps/system_time.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // All members may be called from any thread but the one that receives.
 class ReceiveThread {
@@ -141,4 +141,4 @@ class ReceiveThread {
   std::thread thread_;      // begun under the mutex, joined without it
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -17,7 +17,7 @@
 #include "base/live_clock.h"
 #include "rtps/test_event_log.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 using ::testing::ElementsAre;
@@ -390,4 +390,4 @@ TEST(ReceiveThread, GroupsAreHeard) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -6,7 +6,7 @@
 #include <sys/socket.h>
 #include <utility>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 // The kernel stamps each datagram once; when that is, does not matter, only that they differ.
 ReceiveWatch::Arrival ReceiveWatch::first_unread(int descriptor) {
   const int wanted = 1;
@@ -51,4 +51,4 @@ Time ReceiveWatch::attended() const {
   return oldest;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -13,7 +13,7 @@
 #include "base/mutex.h"
 #include "base/time.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // All members may be called from any thread.
 class ReceiveWatch {
@@ -42,4 +42,4 @@ class ReceiveWatch {
   std::vector<Socket> sockets_ CULPRIT_GUARDED_BY(mutex_);
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 Time at(int seconds) { return Time(std::chrono::seconds(seconds)); }
@@ -77,4 +77,4 @@ TEST(ReceiveWatch, TellsOfTheThreadThatHangsForLongest) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -10,7 +10,7 @@
 #include "rtps/guid.h"
 #include "rtps/submessage.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 inline GuidPrefix prefix_at(std::span<const std::uint8_t> bytes, std::size_t position) {
   GuidPrefix prefix;
@@ -19,7 +19,7 @@ inline GuidPrefix prefix_at(std::span<const std::uint8_t> bytes, std::size_t pos
 }
 
 inline bool is_rtps(std::span<const std::uint8_t> datagram) {
-  return datagram.size() >= rtps::kHeader && std::memcmp(datagram.data(), "RTPS", 4) == 0;
+  return datagram.size() >= kHeader && std::memcmp(datagram.data(), "RTPS", 4) == 0;
 }
 
 inline constexpr std::size_t kPrefixInHeader = 8;
@@ -27,11 +27,11 @@ inline constexpr std::size_t kPrefixInHeader = 8;
 // Calls `found` with each of them; the caller holds what that requires. @pre is_rtps(datagram)
 template <class Found>
 void for_each_speaker(std::span<const std::uint8_t> datagram, Found found) CULPRIT_NOT_ANALYZED {
-  constexpr std::size_t kPrefixInInfoSource = rtps::kSubmessageHeader + 8;
+  constexpr std::size_t kPrefixInInfoSource = kSubmessageHeader + 8;
   found(prefix_at(datagram, kPrefixInHeader));
   bool is_sure_of_place = true;
-  for (std::size_t at = rtps::kHeader; at + rtps::kSubmessageHeader <= datagram.size();) {
-    if (datagram[at] == rtps::kInfoSource && at + kPrefixInInfoSource + 12 <= datagram.size())
+  for (std::size_t at = kHeader; at + kSubmessageHeader <= datagram.size();) {
+    if (datagram[at] == kInfoSource && at + kPrefixInInfoSource + 12 <= datagram.size())
       found(prefix_at(datagram, at + kPrefixInInfoSource));
     if (!is_sure_of_place) {
       ++at;
@@ -41,13 +41,12 @@ void for_each_speaker(std::span<const std::uint8_t> datagram, Found found) CULPR
     const std::size_t low = datagram[at + (is_little ? 2 : 3)];
     const std::size_t high = datagram[at + (is_little ? 3 : 2)];
     const std::size_t length = high << 8 | low;
-    const bool reaches_the_end =
-        length == 0 && datagram[at] != rtps::kPad && datagram[at] != rtps::kInfoTime;
+    const bool reaches_the_end = length == 0 && datagram[at] != kPad && datagram[at] != kInfoTime;
     if (reaches_the_end) return;
     // Implementations differ in where they go on after an odd length: then each place may count.
     is_sure_of_place = length % 4 == 0;
-    at += rtps::kSubmessageHeader + length;
+    at += kSubmessageHeader + length;
   }
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

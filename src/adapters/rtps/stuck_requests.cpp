@@ -7,7 +7,7 @@
 #include "base/invariant.h"
 #include "rtps/for_each_submessage.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 // The parts of an acknowledgement (RTPS 2.3 §9.4.5.2), from its header on: the entities of its reader and its writer, the
@@ -36,7 +36,7 @@ struct Missing {
 // Nothing: it asks for nothing, or not an announcer of Fast DDS.
 std::optional<Missing> missing_in(ByteView request, const GuidPrefix& destination) {
   const bool is_fast_dds = destination.bytes[0] == 1 && destination.bytes[1] == 15;
-  if (request[0] != rtps::kAckNack || !is_fast_dds || request.size() < kBitmap) return std::nullopt;
+  if (request[0] != kAckNack || !is_fast_dds || request.size() < kBitmap) return std::nullopt;
   const auto writer = request.subspan(kWriterAt, 4);
   const bool is_announcer = std::ranges::any_of(
       kEndpointAnnouncers, [&](const auto& each) { return std::ranges::equal(each, writer); });
@@ -56,7 +56,7 @@ std::optional<Missing> missing_in(ByteView request, const GuidPrefix& destinatio
 
 // With the number 0 and without a bitmap; padding takes its place.
 void ask_for_all(std::span<std::uint8_t> request, std::size_t bitmap) {
-  CULPRIT_ASSERT(bitmap >= rtps::kSubmessageHeader && request.size() == kBitmap + bitmap + 4);
+  CULPRIT_ASSERT(bitmap >= kSubmessageHeader && request.size() == kBitmap + bitmap + 4);
   const bool is_little = (request[1] & 1) != 0;
   const auto write_length = [&](std::size_t header, std::size_t length) {
     request[header + (is_little ? 2 : 3)] = static_cast<std::uint8_t>(length);
@@ -68,9 +68,9 @@ void ask_for_all(std::span<std::uint8_t> request, std::size_t bitmap) {
   std::copy_n(request.begin() + static_cast<std::ptrdiff_t>(kBitmap + bitmap), 4,
               request.begin() + kBitmap);
   constexpr std::size_t kEnd = kBitmap + 4;
-  request[kEnd] = rtps::kPad;
+  request[kEnd] = kPad;
   request[kEnd + 1] = is_little ? 1 : 0;
-  write_length(kEnd, bitmap - rtps::kSubmessageHeader);
+  write_length(kEnd, bitmap - kSubmessageHeader);
 }
 
 }  // namespace
@@ -93,9 +93,8 @@ Bytes StuckRequests::mended(ByteView datagram) {
   const MutexLock lock(mutex_);
   if (!has_begun_) return mended;
   for_each_submessage(datagram, [&](ByteView each) CULPRIT_REQUIRES(mutex_) {
-    if (each[0] == rtps::kInfoDestination &&
-        each.size() >= rtps::kSubmessageHeader + destination.bytes.size())
-      destination = prefix_at(each, rtps::kSubmessageHeader);
+    if (each[0] == kInfoDestination && each.size() >= kSubmessageHeader + destination.bytes.size())
+      destination = prefix_at(each, kSubmessageHeader);
     const auto missing = missing_in(each, destination);
     if (!missing || !is_stuck(missing->writer, missing->first)) return;
     if (mended.empty()) mended.assign(datagram.begin(), datagram.end());
@@ -105,4 +104,4 @@ Bytes StuckRequests::mended(ByteView datagram) {
   return mended;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -17,7 +17,7 @@
 #include "rtps/cdr.h"
 #include "rtps/guid.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // All members may be called from any thread.
 class StuckRequests {
@@ -43,4 +43,4 @@ class StuckRequests {
   std::unordered_map<Guid, Request> requests_ CULPRIT_GUARDED_BY(mutex_);  // by writer
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -5,7 +5,7 @@
 #include "rtps/for_each_submessage.h"
 #include "rtps/test_datagram.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 constexpr GuidPrefix kUs{{1, 15, 9}};
@@ -18,8 +18,8 @@ Bytes request(std::uint8_t first, std::uint8_t count, const GuidPrefix& to = kPe
   const Bytes body = {0, 0, announcer, 0xc7, 0, 0, announcer, 0xc2, 0, 0, 0,     0, first, 0,
                       0, 0, 17,        0,    0, 0, 0xff,      0xff, 0, 0, count, 0, 0,     0};
   return TestDatagram(kUs)
-      .submessage(rtps::kInfoDestination, 0, destination)
-      .submessage(rtps::kAckNack, 0x02, body)
+      .submessage(kInfoDestination, 0, destination)
+      .submessage(kAckNack, 0x02, body)
       .bytes();
 }
 
@@ -40,36 +40,10 @@ TEST(StuckRequests, AskForAllWhenTheyAreRepeatedInVain) {
   std::vector<Bytes> all;
   for_each_submessage(mended, [&](ByteView each) { all.emplace_back(each.begin(), each.end()); });
   ASSERT_EQ(all.size(), 3U);
-  const Bytes wanted = {rtps::kAckNack,
-                        0x01,
-                        24,
-                        0,
-                        0,
-                        0,
-                        3,
-                        0xc7,
-                        0,
-                        0,
-                        3,
-                        0xc2,
-                        0,
-                        0,
-                        0,
-                        0,
-                        0,
-                        0,
-                        0,
-                        0,
-                        0,
-                        0,
-                        0,
-                        0,
-                        43,
-                        0,
-                        0,
-                        0};
+  const Bytes wanted = {kAckNack, 0x01, 24, 0, 0, 0, 3, 0xc7, 0, 0, 3,  0xc2, 0, 0,
+                        0,        0,    0,  0, 0, 0, 0, 0,    0, 0, 43, 0,    0, 0};
   EXPECT_EQ(all[1], wanted) << "the count stays, and an answer is asked for";
-  EXPECT_EQ(all[2][0], rtps::kPad);
+  EXPECT_EQ(all[2][0], kPad);
   EXPECT_EQ(mended_of(requests, 8), 2) << "again and again";
 }
 
@@ -107,4 +81,4 @@ TEST(StuckRequests, OfEveryCutOfADatagramAreRead) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

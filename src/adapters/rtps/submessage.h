@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace culprit::ros2::rtps {
+namespace culprit::rtps {
 
 inline constexpr std::size_t kHeader = 20;           // bytes
 inline constexpr std::size_t kSubmessageHeader = 4;  // bytes
 
-enum Kind : std::uint8_t {
+enum SubmessageKind : std::uint8_t {
   kPad = 0x01,
   kAckNack = 0x06,
   kHeartbeat = 0x07,
@@ -36,4 +36,4 @@ inline bool is_about_others(std::uint8_t kind) {
   return kind == kPad || kind == kInfoTime || (kind >= kInfoSource && kind <= kInfoReply);
 }
 
-}  // namespace culprit::ros2::rtps
+}  // namespace culprit::rtps

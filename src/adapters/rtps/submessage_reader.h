@@ -16,7 +16,7 @@
 #include "rtps/submessage.h"
 #include "rtps/system_time.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // One submessage: a cursor over its body. A read beyond the end gives zero, and makes it not ok().
 class SubmessageReader {
@@ -97,7 +97,7 @@ class SubmessageReader {
     skip(4);
     sample.writer = read_writer();
     sample.sequence = read_sequence();
-    if (kind == rtps::kDataFragment) {
+    if (kind == kDataFragment) {
       sample.first = read<std::uint32_t>();
       sample.count = read<std::uint16_t>();
       sample.fragment_size = read<std::uint16_t>();
@@ -108,7 +108,7 @@ class SubmessageReader {
     is_ok_ = is_ok_ && to_parameters >= at_ - counted_from && to_parameters <= kFarthest;
     if (is_ok_) skip(to_parameters - (at_ - counted_from));
     const std::size_t begin = at_;
-    if ((flags & rtps::kHasParameters) != 0) skip_parameters();
+    if ((flags & kHasParameters) != 0) skip_parameters();
     if (is_ok_) sample.parameters = body_.subspan(begin, at_ - begin);
     return sample;
   }
@@ -134,4 +134,4 @@ class SubmessageReader {
   bool is_ok_ = true;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

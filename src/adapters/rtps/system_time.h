@@ -3,8 +3,8 @@
 
 #include <chrono>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 using SystemTime = std::chrono::sys_time<std::chrono::nanoseconds>;
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -9,7 +9,7 @@
 #include "rtps/cdr.h"
 #include "rtps/guid.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // Little endian. Each member function adds a submessage.
 class TestDatagram {
@@ -167,4 +167,4 @@ class TestParameters {
   Bytes bytes_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

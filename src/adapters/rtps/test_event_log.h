@@ -10,7 +10,7 @@
 
 #include "base/mutex.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 inline constexpr std::chrono::seconds kPatience(20);
 
@@ -56,4 +56,4 @@ class EventLog {
   std::vector<Event> events_ CULPRIT_GUARDED_BY(mutex_);
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

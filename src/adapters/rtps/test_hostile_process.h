@@ -17,10 +17,11 @@
 #include <vector>
 
 #include "rtps/datagram_sources.h"
+#include "rtps/submessage.h"
 #include "rtps/test_datagram.h"
 #include "rtps/test_sockets.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 // A stranger's lies that remove a participant. Reliable readers take a number only if it is the next one, so some after it
 // are tried, too.
@@ -97,7 +98,6 @@ inline std::vector<Bytes> smuggled_farewells(const Guid& participant, const Guid
     to.insert(to.end(), more.begin(), more.end());
   };
   const auto submessages = [](const TestDatagram& datagram) {
-    constexpr std::ptrdiff_t kHeader = 20;
     return Bytes(datagram.bytes().begin() + kHeader, datagram.bytes().end());
   };
   Guid writer;
@@ -227,4 +227,4 @@ class HostileProcess {
   pid_t pid_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

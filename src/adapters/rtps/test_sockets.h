@@ -13,7 +13,7 @@
 
 #include "rtps/datagram_sources.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 inline constexpr Ip kLoopback = {127, 0, 0, 1};
 
@@ -72,4 +72,4 @@ class TestFork {
   int pid_;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

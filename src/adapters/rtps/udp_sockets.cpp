@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 // "0100007F:1CF2" is 127.0.0.1, port 7410: four bytes at a time, as the machine keeps them. For
@@ -84,4 +84,4 @@ std::set<std::uint16_t> bound_udp_ports() {
   return ports;
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -11,7 +11,7 @@
 
 #include "rtps/datagram_sources.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 struct UdpSocket {
   UdpAddress address;  // ip 0.0.0.0: it is bound to none; of IPv6 the last four bytes
@@ -28,4 +28,4 @@ std::vector<UdpSocket> udp_sockets(const std::filesystem::path& proc = "/proc");
 // The ports that they are bound to.
 std::set<std::uint16_t> bound_udp_ports();
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

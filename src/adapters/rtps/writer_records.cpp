@@ -5,7 +5,7 @@
 
 #include "base/invariant.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 std::optional<std::int64_t> WriterRecords::furthest(const Guid& writer,
                                                     Clock::time_point now) const {
@@ -103,4 +103,4 @@ void WriterRecords::forget(const GuidPrefix& participant) {
   });
 }
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

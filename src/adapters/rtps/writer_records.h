@@ -18,7 +18,7 @@
 
 #include "rtps/guid.h"
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 
 class WriterRecords {
  public:
@@ -87,4 +87,4 @@ class WriterRecords {
   std::size_t reserved_best_effort_ = 0;
 };
 
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit::ros2 {
+namespace culprit::rtps {
 namespace {
 
 using namespace std::chrono_literals;
@@ -85,4 +85,4 @@ TEST(WriterRecords, FreeWhatAWriterReservedWithIt) {
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::rtps

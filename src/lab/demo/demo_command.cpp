@@ -198,18 +198,18 @@ web::Faults Sunset::faults_of(SunsetDemo& demo) {
   return faults;
 }
 
-std::vector<web::Route> web_routes(web::Faults faults, web::Hub& hub, const web::Metrics& metrics,
-                                   const web::Histories& histories, web::OrderDesk& orders,
-                                   web::RuleDesk& desk, web::StudyRunner& studies,
-                                   live::RobotNames& names, PlannerFactory planner) {
-  std::vector<web::Route> routes = web::live_routes(hub);
-  for (web::Route& route : web::order_routes(orders, hub)) routes.push_back(std::move(route));
-  for (web::Route& route : web::status_routes(hub, metrics)) routes.push_back(std::move(route));
-  for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
+std::vector<http::Route> web_routes(web::Faults faults, http::Hub& hub, const web::Metrics& metrics,
+                                    const web::Histories& histories, web::OrderDesk& orders,
+                                    web::RuleDesk& desk, web::StudyRunner& studies,
+                                    live::RobotNames& names, PlannerFactory planner) {
+  std::vector<http::Route> routes = web::live_routes(hub);
+  for (http::Route& route : web::order_routes(orders, hub)) routes.push_back(std::move(route));
+  for (http::Route& route : web::status_routes(hub, metrics)) routes.push_back(std::move(route));
+  for (http::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
   const auto look = [&names](const LiveInterest& interest) { return names.look(interest); };
-  for (web::Route& route : web::name_routes(look)) routes.push_back(std::move(route));
-  for (web::Route& route : web::incident_routes(hub, "")) routes.push_back(std::move(route));
-  for (web::Route& route : web::doctor_routes(web::examine_robot))
+  for (http::Route& route : web::name_routes(look)) routes.push_back(std::move(route));
+  for (http::Route& route : web::incident_routes(hub, "")) routes.push_back(std::move(route));
+  for (http::Route& route : web::doctor_routes(web::examine_robot))
     routes.push_back(std::move(route));
   routes.push_back(
       web::component_route(hub, histories.usage, look,
@@ -219,9 +219,11 @@ std::vector<web::Route> web_routes(web::Faults faults, web::Hub& hub, const web:
   routes.push_back(web::series_route(histories));
   routes.push_back(web::past_series_route(""));
   routes.push_back(web::what_if_route(std::move(planner)));
-  for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
+  for (http::Route& route : web::study_routes(studies.studies()))
+    routes.push_back(std::move(route));
   routes.push_back(web::single_run_route());
-  for (web::Route& route : web::fault_routes(std::move(faults))) routes.push_back(std::move(route));
+  for (http::Route& route : web::fault_routes(std::move(faults)))
+    routes.push_back(std::move(route));
   return routes;
 }
 
@@ -280,7 +282,7 @@ int demo_robot(const DemoOptions& options) {
   StopSignals signals;
   say(stdout, "Starting {}: {}\n", Robot::kName, Robot::kNodes);
   Demo* running = nullptr;
-  web::Hub hub([&] { running->interrupt(); });
+  http::Hub hub([&] { running->interrupt(); });
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
   web::Histories histories;
@@ -300,8 +302,8 @@ int demo_robot(const DemoOptions& options) {
                             &hub);
   if (!server) return fail(server.error(), kUsage);
   histories.start();
-  std::vector<web::Route> local = web::live_routes(hub);
-  for (web::Route& route : web::order_routes(orders, hub)) local.push_back(std::move(route));
+  std::vector<http::Route> local = web::live_routes(hub);
+  for (http::Route& route : web::order_routes(orders, hub)) local.push_back(std::move(route));
   const auto asked =
       serve_this_machine({"", (*demo)->rules().robot, Robot::kRules, (*demo)->domain(), "culprit",
                           (*server)->address(), culprit_at_terminal()},

@@ -10,7 +10,7 @@ namespace culprit::lab {
 namespace {
 
 // As a map view asks for it.
-ros2::MapPicture whole_map_within(Duration patience) {
+link::MapPicture whole_map_within(Duration patience) {
   live::RobotNames names;
   const auto end = std::chrono::steady_clock::now() + patience;
   while (true) {
@@ -35,7 +35,7 @@ TEST(Rover, GoesOnDrivingAfterItsLidarStalled) {
   EXPECT_EQ(outcome->collisions, 0);
   EXPECT_GT((*demo)->measure().driven_m, driven);
 
-  const ros2::MapPicture map = whole_map_within(std::chrono::seconds(60));
+  const link::MapPicture map = whole_map_within(std::chrono::seconds(60));
   ASSERT_TRUE(map.grid);
   EXPECT_EQ(map.topic, "/map");
   ASSERT_EQ(map.robots.size(), 1u) << testing::PrintToString(map.troubles);

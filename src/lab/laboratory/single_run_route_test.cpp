@@ -13,7 +13,7 @@
 namespace culprit::lab {
 namespace {
 
-web::Answer ask(const Json& body) { return web::single_run_route().answer(body); }
+http::Answer ask(const Json& body) { return web::single_run_route().answer(body); }
 
 Json example() {
   const auto document = parse_json(*read_text("src/web/openapi.json"));
@@ -36,7 +36,7 @@ bool is_in_order(const Json& events) {
 // The very run that the campaign measured: the same failures at the same times.
 TEST(SingleRunRoute, PlaysTheExampleOfTheOpenApiDocumentAsTheCampaignDid) {
   const Json body = example();
-  const web::Answer answer = ask(body);
+  const http::Answer answer = ask(body);
   ASSERT_EQ(answer.status, 200) << answer.body;
   const auto campaign = study::campaign_from_json<study::Campaign>(body["campaign"]);
   const auto study = study::SunsetStudy::make(campaign->rows, campaign->seed);
@@ -62,7 +62,7 @@ TEST(SingleRunRoute, PlaysOtherStudiesToo) {
   rca.settings = {{20, 2, 0, false}};
   rca.planners = {"naive", "bayes"};
   rca.episodes = 3;
-  const web::Answer episode =
+  const http::Answer episode =
       ask({{"study", "rca"}, {"campaign", study::rca::to_json(rca)}, {"row", 1u}, {"run", 2u}});
   ASSERT_EQ(episode.status, 200) << episode.body;
   EXPECT_THAT(types(episode.body["events"]), testing::IsSupersetOf({"fault", "strategy_chosen"}));
@@ -74,12 +74,12 @@ TEST(SingleRunRoute, PlaysOtherStudiesToo) {
   suave.managers = {"bt", study::kCulprit};
   suave.runs = 1;
   Json body{{"study", "suave"}, {"campaign", study::to_json(suave)}, {"row", 0u}, {"run", 0u}};
-  const web::Answer other = ask(body);
+  const http::Answer other = ask(body);
   ASSERT_EQ(other.status, 200) << other.body;
   EXPECT_EQ(other.body["is_told"], false);
   EXPECT_THAT(types(other.body["events"]), testing::ElementsAre("fault", "note"));
   body["row"] = 1u;
-  const web::Answer ours = ask(body);
+  const http::Answer ours = ask(body);
   EXPECT_EQ(ours.body["is_told"], true);
   EXPECT_THAT(types(ours.body["events"]),
               testing::IsSupersetOf(

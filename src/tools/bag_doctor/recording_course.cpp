@@ -39,7 +39,7 @@ struct Transforms {
   static void visit(auto& self, auto& each) { each(self.transforms); }
 };
 
-ros2::ByteView view(std::string_view bytes) {
+rtps::ByteView view(std::string_view bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
@@ -74,7 +74,7 @@ class FieldLook {
       : reader_(std::move(reader)), place_(place) {}
 
   // False if the message does not fit its type.
-  bool look(ros2::ByteView payload, Nanoseconds at, std::vector<FieldCourse>& fields) {
+  bool look(rtps::ByteView payload, Nanoseconds at, std::vector<FieldCourse>& fields) {
     Value value;
     const ros2::FieldStatus status = reader_.read(payload, value);
     if (status != ros2::FieldStatus::kRead) return status != ros2::FieldStatus::kMalformed;
@@ -156,7 +156,7 @@ class TopicLook {
   const std::string& node() const { return node_; }
 
   void look(const bag::BagMessage& message, Nanoseconds at, TopicCourse& course) {
-    const ros2::ByteView payload = view(message.bytes);
+    const rtps::ByteView payload = view(message.bytes);
     if (seconds_) course.stamps.push_back(stamp_in(payload));
     bool fits = true;
     for (FieldLook& each : looks_) fits = each.look(payload, at, course.fields) && fits;
@@ -192,7 +192,7 @@ class TopicLook {
     auto reader = ros2::FieldReader::compile(library, type_, path);
     return reader ? std::optional(std::move(*reader)) : std::nullopt;
   }
-  Nanoseconds stamp_in(ros2::ByteView payload) const {
+  Nanoseconds stamp_in(rtps::ByteView payload) const {
     Value seconds, rest;
     if (!nanoseconds_ || seconds_->read(payload, seconds) != ros2::FieldStatus::kRead ||
         nanoseconds_->read(payload, rest) != ros2::FieldStatus::kRead)
@@ -243,7 +243,7 @@ class Reading {
         read_log(message);
         break;
       case Use::kParameters:
-        if (const auto event = ros2::decode<ros2::msg::ParameterEvent>(view(message.bytes)))
+        if (const auto event = rtps::decode<ros2::msg::ParameterEvent>(view(message.bytes)))
           notice_node(event->node);
         break;
       case Use::kTransition:
@@ -256,7 +256,7 @@ class Reading {
         read_graph(message);
         break;
       case Use::kOwnGraph:
-        if (const auto text = ros2::decode<ros2::msg::String>(view(message.bytes))) {
+        if (const auto text = rtps::decode<ros2::msg::String>(view(message.bytes))) {
           if (const auto graph = parse_graph(text->data)) course_.graph.add(*graph);
         }
         break;
@@ -305,7 +305,7 @@ class Reading {
   }
 
   void read_diagnostics(const bag::BagMessage& message) {
-    const auto array = ros2::decode<ros2::msg::DiagnosticArray>(view(message.bytes));
+    const auto array = rtps::decode<ros2::msg::DiagnosticArray>(view(message.bytes));
     if (!array) return;
     for (const ros2::msg::DiagnosticStatus& each : array->status) {
       if (course_.statuses.size() >= kMostNames && !course_.statuses.contains(each.name)) continue;
@@ -321,7 +321,7 @@ class Reading {
 
   void read_log(const bag::BagMessage& message) {
     constexpr std::uint8_t kError = 40, kFatal = 50;
-    const auto log = ros2::decode<ros2::msg::Log>(view(message.bytes));
+    const auto log = rtps::decode<ros2::msg::Log>(view(message.bytes));
     if (!log || log->name.empty()) return;
     std::string node = "/" + log->name;
     std::replace(node.begin(), node.end(), '.', '/');
@@ -336,7 +336,7 @@ class Reading {
   }
 
   void read_transition(const std::string& node, const bag::BagMessage& message) {
-    const auto event = ros2::decode<ros2::msg::TransitionEvent>(view(message.bytes));
+    const auto event = rtps::decode<ros2::msg::TransitionEvent>(view(message.bytes));
     if (!event || course_.transitions[node].size() >= kMostChanges) return;
     notice_node(node);
     course_.transitions[node].push_back(
@@ -344,7 +344,7 @@ class Reading {
   }
 
   void read_transforms(bool is_static, const bag::BagMessage& message) {
-    const auto all = ros2::decode<Transforms>(view(message.bytes));
+    const auto all = rtps::decode<Transforms>(view(message.bytes));
     if (!all) return;
     for (const StampedTransform& each : all->transforms) {
       const std::tuple key(frame(each.header.frame_id), frame(each.child_frame_id), is_static);
@@ -364,7 +364,7 @@ class Reading {
   void read_graph(const bag::BagMessage& message) {
     constexpr const char* kType = "rosgraph_msgs/msg/Graph";
     constexpr int kMost = 1'000;
-    const ros2::ByteView payload = view(message.bytes);
+    const rtps::ByteView payload = view(message.bytes);
     const auto text_at = [&](const std::string& path) -> std::optional<std::string> {
       const auto reader = ros2::FieldReader::compile(library_, kType, path);
       Value value;

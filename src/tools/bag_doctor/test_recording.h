@@ -49,12 +49,12 @@ class Payload {
     return *this;
   }
   std::string bytes() {
-    const ros2::Bytes taken = writer_.take();
+    const rtps::Bytes taken = writer_.take();
     return {taken.begin(), taken.end()};
   }
 
  private:
-  ros2::CdrWriter writer_;
+  rtps::CdrWriter writer_;
 };
 
 // A number that changes with each message, the same in each run: deterministic noise around 0.

@@ -26,7 +26,7 @@ Asking::Parameters* Asking::parameters_client(const std::string& node) {
   std::unique_ptr<Parameters>& client = parameter_clients_[node];
   if (client == nullptr) {
     auto made = self_.create_client<ros2::srv::GetParameters>(node + "/get_parameters",
-                                                              ros2::qos::kParameterServices);
+                                                              rtps::qos::kParameterServices);
     if (made) client = std::move(*made);
   }
   return client.get();
@@ -74,7 +74,7 @@ void Asking::ask_for_parameters(const std::string& node, const std::vector<std::
   std::unique_ptr<Names>& client = name_clients_[node];
   if (client == nullptr) {
     auto made = self_.create_client<ros2::srv::ListParameters>(node + "/list_parameters",
-                                                               ros2::qos::kParameterServices);
+                                                               rtps::qos::kParameterServices);
     if (!made) return;
     client = std::move(*made);
   }

@@ -13,16 +13,16 @@ namespace {
 
 constexpr std::size_t kFewestMessages = 10;
 
-std::string in_words(const ros2::Qos& qos) {
-  std::string words = qos.reliability == ros2::Reliability::kReliable ? "reliable" : "best effort";
-  words += qos.durability == ros2::Durability::kTransientLocal ? ", transient local" : ", volatile";
-  if (qos.deadline != ros2::kInfinite) words += ", deadline " + duration(qos.deadline);
-  if (qos.lifespan != ros2::kInfinite) words += ", lifespan " + duration(qos.lifespan);
-  if (qos.liveliness == ros2::Liveliness::kManualByTopic) words += ", liveliness manual by topic";
-  if (qos.liveliness_lease != ros2::kInfinite)
+std::string in_words(const rtps::Qos& qos) {
+  std::string words = qos.reliability == rtps::Reliability::kReliable ? "reliable" : "best effort";
+  words += qos.durability == rtps::Durability::kTransientLocal ? ", transient local" : ", volatile";
+  if (qos.deadline != rtps::kInfinite) words += ", deadline " + duration(qos.deadline);
+  if (qos.lifespan != rtps::kInfinite) words += ", lifespan " + duration(qos.lifespan);
+  if (qos.liveliness == rtps::Liveliness::kManualByTopic) words += ", liveliness manual by topic";
+  if (qos.liveliness_lease != rtps::kInfinite)
     words += ", liveliness lease " + duration(qos.liveliness_lease);
-  if (qos.ownership == ros2::Ownership::kExclusive) words += ", exclusive";
-  if (qos.keys == ros2::Keys::kSome) words += ", with keys";
+  if (qos.ownership == rtps::Ownership::kExclusive) words += ", exclusive";
+  if (qos.keys == rtps::Keys::kSome) words += ", with keys";
   return words;
 }
 

@@ -6,7 +6,7 @@ namespace culprit::doctor {
 
 void ClockListening::listen() {
   if (subscription_) return;
-  constexpr ros2::Qos kQos{.reliability = ros2::Reliability::kBestEffort, .depth = 1};
+  constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 1};
   // A message of this type is one builtin_interfaces/Time.
   auto subscription = ros2::RawSubscription::create(
       self_, "/clock", "rosgraph_msgs/msg/Clock", kQos, ros2::PayloadUse::kWhole,
@@ -15,7 +15,7 @@ void ClockListening::listen() {
 }
 
 void ClockListening::on_sample(const ros2::Sample& sample) {
-  const auto time = ros2::decode<ros2::msg::Time>(sample.payload);
+  const auto time = rtps::decode<ros2::msg::Time>(sample.payload);
   if (!time) return;
   const Duration shown = std::chrono::seconds(time->sec) + std::chrono::nanoseconds(time->nanosec);
   const MutexLock lock(mutex_);

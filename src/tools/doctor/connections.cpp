@@ -25,22 +25,22 @@ struct Mismatch {
   std::string policy, offered, requested;
 };
 
-std::string word(ros2::Reliability reliability) {
-  return reliability == ros2::Reliability::kReliable ? "reliable" : "best effort";
+std::string word(rtps::Reliability reliability) {
+  return reliability == rtps::Reliability::kReliable ? "reliable" : "best effort";
 }
-std::string word(ros2::Durability durability) {
-  return durability == ros2::Durability::kTransientLocal ? "transient local" : "volatile";
+std::string word(rtps::Durability durability) {
+  return durability == rtps::Durability::kTransientLocal ? "transient local" : "volatile";
 }
-std::string word(ros2::Liveliness liveliness) {
-  return liveliness == ros2::Liveliness::kManualByTopic ? "manual by topic" : "automatic";
+std::string word(rtps::Liveliness liveliness) {
+  return liveliness == rtps::Liveliness::kManualByTopic ? "manual by topic" : "automatic";
 }
-std::string word(ros2::Ownership ownership) {
-  return ownership == ros2::Ownership::kExclusive ? "exclusive" : "shared";
+std::string word(rtps::Ownership ownership) {
+  return ownership == rtps::Ownership::kExclusive ? "exclusive" : "shared";
 }
-std::string word(ros2::Keys keys) { return keys == ros2::Keys::kSome ? "some" : "none"; }
+std::string word(rtps::Keys keys) { return keys == rtps::Keys::kSome ? "some" : "none"; }
 std::string word(Duration time) { return duration(time); }
 
-std::vector<Mismatch> mismatches(const ros2::Qos& offered, const ros2::Qos& requested) {
+std::vector<Mismatch> mismatches(const rtps::Qos& offered, const rtps::Qos& requested) {
   std::vector<Mismatch> all;
   const auto compare = [&](const char* policy, auto member, auto is_enough) {
     if (!is_enough(offered.*member, requested.*member))
@@ -49,13 +49,13 @@ std::vector<Mismatch> mismatches(const ros2::Qos& offered, const ros2::Qos& requ
   const auto no_less = [](auto a, auto b) { return a >= b; };
   const auto no_longer = [](auto a, auto b) { return a <= b; };
   const auto same = [](auto a, auto b) { return a == b; };
-  compare("reliability", &ros2::Qos::reliability, no_less);
-  compare("durability", &ros2::Qos::durability, no_less);
-  compare("deadline", &ros2::Qos::deadline, no_longer);
-  compare("liveliness", &ros2::Qos::liveliness, no_less);
-  compare("liveliness lease", &ros2::Qos::liveliness_lease, no_longer);
-  compare("ownership", &ros2::Qos::ownership, same);
-  compare("keys", &ros2::Qos::keys, same);
+  compare("reliability", &rtps::Qos::reliability, no_less);
+  compare("durability", &rtps::Qos::durability, no_less);
+  compare("deadline", &rtps::Qos::deadline, no_longer);
+  compare("liveliness", &rtps::Qos::liveliness, no_less);
+  compare("liveliness lease", &rtps::Qos::liveliness_lease, no_longer);
+  compare("ownership", &rtps::Qos::ownership, same);
+  compare("keys", &rtps::Qos::keys, same);
   return all;
 }
 
@@ -304,7 +304,7 @@ void look_for_missed(const Picture& picture, const std::string& name, const Chan
   const auto flow = picture.flows.find(name);
   if (flow == picture.flows.end() || !flow->second.last_sent || is_internal(name)) return;
   const auto latches = [](const End& end) {
-    return end.endpoint.qos.durability == ros2::Durability::kTransientLocal;
+    return end.endpoint.qos.durability == rtps::Durability::kTransientLocal;
   };
   if (topic.senders.empty() || !std::ranges::all_of(topic.senders, latches)) return;
   const auto process_of = [&](const std::string& node) -> const Process* {

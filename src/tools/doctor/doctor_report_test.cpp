@@ -66,7 +66,7 @@ TEST(Baseline, D100AMissingNodeD101ANewOneAndD102WhatANodeLacks) {
 
 TEST(Baseline, D103ATypeOrAQualityOfServiceThatHasChanged) {
   Picture picture = healthy_robot();
-  picture.nodes[0].endpoints[0].qos.reliability = ros2::Reliability::kBestEffort;
+  picture.nodes[0].endpoints[0].qos.reliability = rtps::Reliability::kBestEffort;
   EXPECT_THAT(
       differences(picture),
       ElementsAre("D103 /scan: /lidar: it publishes it as best effort, volatile, and did as "
@@ -133,7 +133,7 @@ TEST(Baseline, AFileThatIsNoneIsAnErrorAndNothingElse) {
 
 TEST(Report, IsDataForPrograms) {
   Picture picture = healthy_robot();
-  picture.nodes[0].endpoints[0].qos.reliability = ros2::Reliability::kBestEffort;
+  picture.nodes[0].endpoints[0].qos.reliability = rtps::Reliability::kBestEffort;
   picture.left_out = {"3 topics were not listened to"};
   const Report report = report_of(picture);
   EXPECT_EQ(summary(report), "3 nodes on domain 7: 1 error, 0 warnings");

@@ -17,7 +17,7 @@ using testing::SizeIs;
 // ---- messages and time
 
 // /scan, received for this long with these pauses.
-Picture robot_with_flow(Duration listened, std::vector<Duration> pauses, ros2::Qos requested = {}) {
+Picture robot_with_flow(Duration listened, std::vector<Duration> pauses, rtps::Qos requested = {}) {
   Picture picture = robot_with(publishes("/scan", {.deadline = 1ms}), reads("/scan", requested));
   Flow& flow = picture.flows["/scan"];
   flow.listened = listened;
@@ -27,7 +27,7 @@ Picture robot_with_flow(Duration listened, std::vector<Duration> pauses, ros2::Q
 }
 
 TEST(Examine, D040LaterThanTheDeadline) {
-  const ros2::Qos within_200_ms{.deadline = 200ms};
+  const rtps::Qos within_200_ms{.deadline = 200ms};
   std::vector<Duration> pauses(40, 100ms);
   EXPECT_THAT(examine(robot_with_flow(5s, pauses, within_200_ms)), IsEmpty());
   pauses[7] = 300ms;
@@ -93,7 +93,7 @@ TEST(Examine, D042OldStampsD043FutureStampsD044StampsThatJumpBack) {
   EXPECT_EQ(only_finding(jumps).code, "D044");
   EXPECT_EQ(only_finding(jumps).seen, "its time stamps jumped back 2 times, by 4 s at most");
   Picture latched = robot_with_stamps(1h);
-  latched.nodes[0].endpoints[0].qos.durability = ros2::Durability::kTransientLocal;
+  latched.nodes[0].endpoints[0].qos.durability = rtps::Durability::kTransientLocal;
   EXPECT_THAT(examine(latched), IsEmpty()) << "it was true then, and still is";
 
   // A bag that is played without /clock, and a camera that is off by a minute.

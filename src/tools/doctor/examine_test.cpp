@@ -38,7 +38,7 @@ TEST(Examine, D001ReliabilityThatIsNotOffered) {
 
 TEST(Examine, D001EveryPolicyWithBothValues) {
   struct Case {
-    ros2::Qos offered, requested;
+    rtps::Qos offered, requested;
     const char* seen;
   };
   const Case cases[] = {
@@ -46,13 +46,13 @@ TEST(Examine, D001EveryPolicyWithBothValues) {
       {{}, {.deadline = 100ms}, "deadline: offered is none, requested is 0.1 s"},
       {{.deadline = 1s}, {.deadline = 100ms}, "deadline: offered is 1 s, requested is 0.1 s"},
       {{},
-       {.liveliness = ros2::Liveliness::kManualByTopic},
+       {.liveliness = rtps::Liveliness::kManualByTopic},
        "liveliness: offered is automatic, requested is manual by topic"},
       {{}, {.liveliness_lease = 3s}, "liveliness lease: offered is none, requested is 3 s"},
-      {{.ownership = ros2::Ownership::kExclusive},
+      {{.ownership = rtps::Ownership::kExclusive},
        {},
        "ownership: offered is exclusive, requested is shared"},
-      {{.keys = ros2::Keys::kSome}, {}, "keys: offered is some, requested is none"},
+      {{.keys = rtps::Keys::kSome}, {}, "keys: offered is some, requested is none"},
       {kBestEffort, kLatched,
        "reliability: offered is best effort, requested is reliable; "
        "durability: offered is volatile, requested is transient local"},
@@ -63,11 +63,11 @@ TEST(Examine, D001EveryPolicyWithBothValues) {
     EXPECT_EQ(finding.code, "D001");
     EXPECT_EQ(finding.seen, each.seen);
   }
-  const ros2::Qos more{.durability = ros2::Durability::kTransientLocal,
+  const rtps::Qos more{.durability = rtps::Durability::kTransientLocal,
                        .deadline = 100ms,
-                       .liveliness = ros2::Liveliness::kManualByTopic,
+                       .liveliness = rtps::Liveliness::kManualByTopic,
                        .liveliness_lease = 1s};
-  const ros2::Qos less{.deadline = 1s, .liveliness_lease = 2s};
+  const rtps::Qos less{.deadline = 1s, .liveliness_lease = 2s};
   EXPECT_THAT(examine(robot_with(publishes("/scan", more), reads("/scan", less))), IsEmpty());
 }
 
@@ -144,7 +144,7 @@ TEST(Examine, D005OneNameOfATypeAndTwoDefinitions) {
 
 TEST(Examine, D006WhatIsLatchedWasPublishedBeforeItsReaderCame) {
   Picture picture = robot_with(publishes("/map", kLatched), reads("/map"));
-  const ros2::SystemTime noon(1'000'000s);
+  const rtps::SystemTime noon(1'000'000s);
   picture.flows["/map"].last_sent = noon;
   picture.processes[11].started = noon - 60s;
   picture.processes[12].started = noon - 50s;

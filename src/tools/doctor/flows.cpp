@@ -33,7 +33,7 @@ const End* most_demanding(const Channel& topic) {
   const End* found = nullptr;
   for (const End& to : topic.receivers) {
     const Duration deadline = to.endpoint.qos.deadline;
-    if (deadline == ros2::kInfinite || is_tool_node(to.node)) continue;
+    if (deadline == rtps::kInfinite || is_tool_node(to.node)) continue;
     if (found == nullptr || deadline < found->endpoint.qos.deadline) found = &to;
   }
   return found;
@@ -148,7 +148,7 @@ bool is_running(const std::optional<SimulatedClock>& clock) {
 void look_at_stamps(const Picture& picture, const std::string& name, const Channel& topic,
                     const Flow& flow, Duration clock, Findings& all) {
   const auto latches = [](const End& from) {
-    return from.endpoint.qos.durability == ros2::Durability::kTransientLocal;
+    return from.endpoint.qos.durability == rtps::Durability::kTransientLocal;
   };
   // A latched message was true when it was published, and still is.
   if (!flow.stamps || topic.senders.empty() || std::ranges::any_of(topic.senders, latches)) return;

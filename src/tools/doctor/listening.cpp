@@ -14,8 +14,8 @@ constexpr std::size_t kMostLags = 256;
 constexpr std::size_t kMostFrames = 16;
 constexpr std::size_t kMostWriters = 64;
 
-ros2::SystemTime time_of(const ros2::msg::Time& stamp) {
-  return ros2::SystemTime(std::chrono::seconds(stamp.sec) +
+rtps::SystemTime time_of(const ros2::msg::Time& stamp) {
+  return rtps::SystemTime(std::chrono::seconds(stamp.sec) +
                           std::chrono::nanoseconds(stamp.nanosec));
 }
 
@@ -35,13 +35,13 @@ class Listening::Ear {
                                    Time now) {
     std::unique_ptr<Ear> ear(new Ear(self, topic, simulated_now, now));
     // Only a reliable reader is sent what was published before (DDS 1.4 §2.2.3.4).
-    const ros2::Qos qos =
+    const rtps::Qos qos =
         topic.is_latched
-            ? ros2::Qos{.durability = ros2::Durability::kTransientLocal,
+            ? rtps::Qos{.durability = rtps::Durability::kTransientLocal,
                         .depth = 1,
                         .keys = topic.keys}
-            : ros2::Qos{
-                  .reliability = ros2::Reliability::kBestEffort, .depth = 1, .keys = topic.keys};
+            : rtps::Qos{
+                  .reliability = rtps::Reliability::kBestEffort, .depth = 1, .keys = topic.keys};
     // Pauses are compared with deadlines. All else may wait a moment, which costs less.
     const auto use =
         topic.has_deadline ? ros2::PayloadUse::kBeginning : ros2::PayloadUse::kBeginningLater;
@@ -125,12 +125,12 @@ class Listening::Ear {
   }
 
   void read_header(const ros2::Sample& sample) CULPRIT_REQUIRES(mutex_) {
-    const auto header = ros2::decode<ros2::msg::Header>(sample.payload);
+    const auto header = rtps::decode<ros2::msg::Header>(sample.payload);
     if (!header) return;
     if (frames_.size() < kMostFrames || frames_.contains(header->frame_id))
       frames_.insert(header->frame_id);
     if (header->stamp == ros2::msg::Time{}) return;
-    const ros2::SystemTime stamp = time_of(header->stamp);
+    const rtps::SystemTime stamp = time_of(header->stamp);
     if (lags_.size() < kMostLags) {
       lags_.push_back(sample.sent - stamp);
       if (const auto simulated = simulated_now_())
@@ -139,8 +139,8 @@ class Listening::Ear {
     note_jump({sample.identity.writer, header->frame_id}, stamp);
   }
 
-  using Origin = std::pair<ros2::Guid, std::string>;
-  void note_jump(const Origin& origin, ros2::SystemTime stamp) CULPRIT_REQUIRES(mutex_) {
+  using Origin = std::pair<rtps::Guid, std::string>;
+  void note_jump(const Origin& origin, rtps::SystemTime stamp) CULPRIT_REQUIRES(mutex_) {
     // Less is two threads that publish, or pictures that are paired out of turn: no clock was set.
     constexpr Duration kJump = std::chrono::milliseconds(500);
     if (stamps_.size() >= kMostWriters && !stamps_.contains(origin)) return;
@@ -170,9 +170,9 @@ class Listening::Ear {
   std::vector<Duration> simulated_lags_ CULPRIT_GUARDED_BY(mutex_);
   std::size_t jumps_back_ CULPRIT_GUARDED_BY(mutex_) = 0;
   Duration furthest_back_ CULPRIT_GUARDED_BY(mutex_){};
-  std::map<Origin, ros2::SystemTime> stamps_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<Origin, rtps::SystemTime> stamps_ CULPRIT_GUARDED_BY(mutex_);
   std::set<std::string> frames_ CULPRIT_GUARDED_BY(mutex_);
-  std::optional<ros2::SystemTime> last_sent_ CULPRIT_GUARDED_BY(mutex_);
+  std::optional<rtps::SystemTime> last_sent_ CULPRIT_GUARDED_BY(mutex_);
   std::unique_ptr<ros2::RawSubscription> subscription_;  // null: enough was heard
 };
 

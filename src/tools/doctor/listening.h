@@ -21,7 +21,7 @@ namespace culprit::doctor {
 struct WantedTopic {
   std::string name;
   std::string type;
-  ros2::Keys keys = ros2::Keys::kNone;
+  rtps::Keys keys = rtps::Keys::kNone;
   bool is_latched = false;    // all its publishers latch: what was published before is wanted, too
   bool is_stamped = false;    // its messages begin with a header
   bool has_deadline = false;  // a node demands one: its pauses are compared with it

@@ -84,7 +84,7 @@ class Look {
 
  private:
   Expected<void> listen_to_diagnostics() {
-    constexpr ros2::Qos kQos{.reliability = ros2::Reliability::kBestEffort, .depth = 100};
+    constexpr rtps::Qos kQos{.reliability = rtps::Reliability::kBestEffort, .depth = 100};
     auto diagnostics = node_->create_subscription<ros2::msg::DiagnosticArray>(
         kDiagnostics, kQos,
         [this](const ros2::msg::DiagnosticArray& message) { on_diagnostics(message); });
@@ -247,7 +247,7 @@ class Look {
   std::vector<Node> nodes_with_endpoints(
       std::vector<ros2::Graph::ParticipantView> participants) const {
     std::vector<Node> nodes;
-    std::map<std::pair<ros2::GuidPrefix, std::string>, std::size_t> places;
+    std::map<std::pair<rtps::GuidPrefix, std::string>, std::size_t> places;
     for (ros2::Graph::NodeView& view : context_->graph().bare_nodes()) {
       places[{view.participant, view.node.name}] = nodes.size();
       nodes.push_back(Node{std::move(view.node)});
@@ -336,11 +336,11 @@ class Look {
 
   void add_transforms(Picture& seen, const std::vector<ros2::Graph::ParticipantView>& participants,
                       Time now) {
-    std::map<ros2::Guid, std::string> writers;
+    std::map<rtps::Guid, std::string> writers;
     for (const auto& each : participants) {
       for (const auto& owned : each.endpoints) writers[owned.id] = owned.node;
     }
-    std::map<ros2::Guid, std::size_t> numbers;
+    std::map<rtps::Guid, std::size_t> numbers;
     for (auto& [writer, edge] : transforms_->heard(began_)) {
       const auto owner = writers.find(writer);
       if (owner == writers.end()) continue;  // it has left

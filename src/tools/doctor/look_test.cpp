@@ -76,14 +76,14 @@ class Member {
   }
 
   template <class Message>
-  ros2::Publisher<Message>& publishes(const std::string& topic, const ros2::Qos& qos = {}) {
+  ros2::Publisher<Message>& publishes(const std::string& topic, const rtps::Qos& qos = {}) {
     auto publisher = std::make_shared<std::optional<ros2::Publisher<Message>>>();
     run([&] { publisher->emplace(std::move(*node_->create_publisher<Message>(topic, qos))); });
     keep_.push_back(publisher);
     return **publisher;
   }
   template <class Message>
-  Member& reads(const std::string& topic, const ros2::Qos& qos = {}) {
+  Member& reads(const std::string& topic, const rtps::Qos& qos = {}) {
     run([&] {
       subscriptions_.push_back(
           std::move(*node_->create_subscription<Message>(topic, qos, [](const Message&) {})));
@@ -180,7 +180,7 @@ TEST(Look, FindsNodesThatDoNotReceiveFromOthersAndNothingElse) {
   Member first(domain.options(), "twin");
   Member second(domain.options(), "twin");
 
-  lidar.publishes<Scan>("/scan", {.reliability = ros2::Reliability::kBestEffort});
+  lidar.publishes<Scan>("/scan", {.reliability = rtps::Reliability::kBestEffort});
   slam.reads<Scan>("/scan", {.liveliness_lease = 3s});
   lidar.publishes<Imu>("/imu");
   slam.reads_as("/imu", kScanType, "");
@@ -189,7 +189,7 @@ TEST(Look, FindsNodesThatDoNotReceiveFromOthersAndNothingElse) {
   lidar.publishes_as("/image", kImageType, "typehash=RIHS01_aaaaaaaa;");
   slam.reads_as("/image", kImageType, "typehash=RIHS01_bbbbbbbb;");
   // An endpoint that is never announced.
-  ros2::Guid nowhere = camera.context()->participant().guid();
+  rtps::Guid nowhere = camera.context()->participant().guid();
   nowhere.bytes[13] = 99;
   nowhere.bytes[15] = 3;
   camera.run([&] { camera.node().entry().add(nowhere); });
@@ -214,7 +214,7 @@ TEST(Look, FindsNothingAmongHealthyNodesAndSaysWhenNobodyIsThere) {
   Member slam(domain.options(), "slam");
   auto& scan = lidar.publishes<Scan>("/scan");
   lidar.every(50ms, [&] { scan.publish({{now(), "laser"}}); });
-  slam.reads<Scan>("/scan", ros2::qos::kSensorData);
+  slam.reads<Scan>("/scan", rtps::qos::kSensorData);
   EXPECT_THAT(found(domain, 0), IsEmpty());
 }
 
@@ -231,7 +231,7 @@ TEST(Look, FindsWrongTimesAndBrokenTreesAndNothingElse) {
   auto& lost = robot.publishes<Scan>("/lost");
   robot.publishes<Image>("/silent");
   auto& latched = robot.publishes<ros2::msg::String>(
-      "/latched", {.durability = ros2::Durability::kTransientLocal});
+      "/latched", {.durability = rtps::Durability::kTransientLocal});
   latched.publish({"a map"});
   for (const char* topic : {"/old", "/early", "/jumps", "/lost"}) reader.reads<Scan>(topic);
   reader.reads<Imu>("/late", {.deadline = 60ms});
@@ -405,7 +405,7 @@ TEST(Watch, LooksAgainAndAgainUntilItIsStopped) {
       [&](const Picture& picture) {
         all.push_back(found_in(picture));
         if (all.size() == 1) {
-          lidar.publishes<Scan>("/scan", {.reliability = ros2::Reliability::kBestEffort});
+          lidar.publishes<Scan>("/scan", {.reliability = rtps::Reliability::kBestEffort});
           slam.reads<Scan>("/scan");
         }
         if (all.back().size() == 1 || all.size() > 5) stop.request_stop();

@@ -73,7 +73,7 @@ constexpr int kMostDomains = 233;
 // The domains that sockets wait on, with the sockets.
 std::map<std::uint32_t, std::set<std::string>> sockets_by_domain() {
   std::map<std::uint32_t, std::set<std::string>> found;
-  for (const ros2::UdpSocket& socket : ros2::udp_sockets()) {
+  for (const rtps::UdpSocket& socket : rtps::udp_sockets()) {
     const int above = socket.address.port - kFirstPort;
     if (above < 0 || above % kPortsOfDomain != 0 || above / kPortsOfDomain >= kMostDomains)
       continue;

@@ -22,10 +22,10 @@ bool is_read(const std::string& topic) {
 
 }  // namespace
 
-bool never_meets(std::string_view dds_topic, ros2::EndpointRole role) {
+bool never_meets(std::string_view dds_topic, rtps::EndpointRole role) {
   const auto meaning = ros2::demangle_topic(dds_topic);
   if (!meaning) return false;  // ros_discovery_info, and what is not of ROS
-  const bool reads = role == ros2::EndpointRole::kReader;
+  const bool reads = role == rtps::EndpointRole::kReader;
   switch (meaning->channel) {
     case ros2::Channel::kTopic:
       return reads || !is_read(meaning->name);

@@ -9,6 +9,6 @@
 namespace culprit::doctor {
 
 // ros2::ParticipantOptions::never_meets. Services that asking.h calls, and topics that wanted_topics.h and the other listeners may need, must not be in here.
-bool never_meets(std::string_view dds_topic, ros2::EndpointRole role);
+bool never_meets(std::string_view dds_topic, rtps::EndpointRole role);
 
 }  // namespace culprit::doctor

@@ -7,8 +7,8 @@
 namespace culprit::doctor {
 namespace {
 
-constexpr auto kReader = ros2::EndpointRole::kReader;
-constexpr auto kWriter = ros2::EndpointRole::kWriter;
+constexpr auto kReader = rtps::EndpointRole::kReader;
+constexpr auto kWriter = rtps::EndpointRole::kWriter;
 
 TEST(NeverMet, ALookReadsTopicsAndWritesNone) {
   for (const char* topic :

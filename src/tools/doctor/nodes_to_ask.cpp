@@ -19,7 +19,7 @@ std::vector<ros2::Graph::NodeView> nodes_to_ask(std::vector<ros2::Graph::NodeVie
                                                 std::size_t round) {
   constexpr std::size_t kMost = 60;
   if (nodes.size() <= kMost) return nodes;
-  std::map<ros2::GuidPrefix, std::vector<std::size_t>> by_participant;
+  std::map<rtps::GuidPrefix, std::vector<std::size_t>> by_participant;
   std::vector<std::size_t> managed;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     by_participant[nodes[i].participant].push_back(i);

@@ -31,7 +31,7 @@ TEST(NodesToAsk, AreAllOfASmallRobotAndSomeOfEachProcessOfALargeOne) {
   for (std::size_t round = 0; round < 20; ++round) {
     const auto chosen = nodes_to_ask(nodes(10, 20), round);
     EXPECT_THAT(chosen, SizeIs(10));
-    std::set<ros2::GuidPrefix> processes;
+    std::set<rtps::GuidPrefix> processes;
     for (const auto& view : chosen) {
       asked.insert(view.node.name);
       processes.insert(view.participant);

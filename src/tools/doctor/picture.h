@@ -82,7 +82,7 @@ struct Flow {
   };
   std::optional<Stamps> stamps{};
   std::set<std::string> frames{};               // that they name
-  std::optional<ros2::SystemTime> last_sent{};  // of the newest, also of what was sent before
+  std::optional<rtps::SystemTime> last_sent{};  // of the newest, also of what was sent before
 };
 
 // /clock.
@@ -113,7 +113,7 @@ struct Status {
 // A process of this machine.
 struct Process {
   std::string program{};  // "camera_driver", as the kernel shortens it
-  ros2::SystemTime started{};
+  rtps::SystemTime started{};
   Duration age_at_first{};  // at the first sample
   std::string launcher{};   // "process 9 (ros2)"; empty: nobody, or the first process
   // Its launcher has exited, and so has the reader of its output.

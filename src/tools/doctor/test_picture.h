@@ -12,16 +12,16 @@
 
 namespace culprit::doctor {
 
-inline constexpr ros2::Qos kBestEffort{.reliability = ros2::Reliability::kBestEffort};
-inline constexpr ros2::Qos kLatched{.durability = ros2::Durability::kTransientLocal};
+inline constexpr rtps::Qos kBestEffort{.reliability = rtps::Reliability::kBestEffort};
+inline constexpr rtps::Qos kLatched{.durability = rtps::Durability::kTransientLocal};
 inline constexpr const char* kScan = "sensor_msgs/msg/LaserScan";
 inline constexpr const char* kString = "std_msgs/msg/String";
 
-inline ros2::GraphEndpoint publishes(std::string topic, ros2::Qos qos = {},
+inline ros2::GraphEndpoint publishes(std::string topic, rtps::Qos qos = {},
                                      std::string type = kScan) {
   return {EndpointKind::kPublisher, std::move(topic), std::move(type), qos};
 }
-inline ros2::GraphEndpoint reads(std::string topic, ros2::Qos qos = {}, std::string type = kScan) {
+inline ros2::GraphEndpoint reads(std::string topic, rtps::Qos qos = {}, std::string type = kScan) {
   return {EndpointKind::kSubscriber, std::move(topic), std::move(type), qos};
 }
 inline ros2::GraphEndpoint serves(std::string service, std::string type = "std_srvs/srv/Trigger") {

@@ -16,9 +16,9 @@ std::string frame(const std::string& name) { return name.starts_with('/') ? name
 void TransformListening::listen_to(const std::string& topic, Time now) {
   if (subscriptions_.contains(topic)) return;
   const bool is_static = topic == "/tf_static";
-  const ros2::Qos qos =
-      is_static ? ros2::Qos{.durability = ros2::Durability::kTransientLocal, .depth = 100}
-                : ros2::Qos{.reliability = ros2::Reliability::kBestEffort, .depth = 100};
+  const rtps::Qos qos =
+      is_static ? rtps::Qos{.durability = rtps::Durability::kTransientLocal, .depth = 100}
+                : rtps::Qos{.reliability = rtps::Reliability::kBestEffort, .depth = 100};
   auto subscription = ros2::RawSubscription::create(
       self_, topic, ros2::msg::TFMessage::kType, qos, ros2::PayloadUse::kWhole,
       [this, is_static](const ros2::Sample& sample) { on_sample(sample, is_static); });
@@ -32,7 +32,7 @@ Duration TransformListening::listened(Time now) const {
 }
 
 void TransformListening::on_sample(const ros2::Sample& sample, bool is_static) {
-  const auto message = ros2::decode<ros2::msg::TFMessage>(sample.payload);
+  const auto message = rtps::decode<ros2::msg::TFMessage>(sample.payload);
   if (!message) return;
   const Time now = live_now();
   const MutexLock lock(mutex_);

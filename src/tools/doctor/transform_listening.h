@@ -29,7 +29,7 @@ class TransformListening {
 
   // `began`: when the look did. Without the nodes, which follow from the writers.
   struct Heard {
-    ros2::Guid writer;
+    rtps::Guid writer;
     Transform edge;
   };
   std::vector<Heard> heard(Time began) const;
@@ -40,7 +40,7 @@ class TransformListening {
  private:
   struct Key {
     std::string parent, child;
-    ros2::Guid writer;
+    rtps::Guid writer;
     bool is_static = false;
     auto operator<=>(const Key&) const = default;
   };

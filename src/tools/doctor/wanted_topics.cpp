@@ -11,11 +11,11 @@ namespace culprit::doctor {
 namespace {
 
 bool latches(const End& end) {
-  return end.endpoint.qos.durability == ros2::Durability::kTransientLocal &&
-         end.endpoint.qos.reliability == ros2::Reliability::kReliable;
+  return end.endpoint.qos.durability == rtps::Durability::kTransientLocal &&
+         end.endpoint.qos.reliability == rtps::Reliability::kReliable;
 }
 
-bool has_deadline(const End& end) { return end.endpoint.qos.deadline != ros2::kInfinite; }
+bool has_deadline(const End& end) { return end.endpoint.qos.deadline != rtps::kInfinite; }
 
 }  // namespace
 

@@ -37,7 +37,7 @@ std::optional<double> number_in(const Value& value) {
   return std::holds_alternative<std::string>(read) ? std::nullopt : number_in(read);
 }
 
-ros2::ByteView bytes_of(const bag::BagMessage& message) {
+rtps::ByteView bytes_of(const bag::BagMessage& message) {
   return {reinterpret_cast<const std::uint8_t*>(message.bytes.data()), message.bytes.size()};
 }
 
@@ -73,7 +73,7 @@ Json first_graph(const fs::path& path, const CurveLimits& limits) {
     const bag::BagTopic& topic = file->contents().topics()[message.topic];
     if (topic.name != recorder::IncidentRecorder::kGraphTopic || message.bytes.size() > kMostGraph)
       continue;
-    const auto text = ros2::decode<ros2::msg::String>(bytes_of(message));
+    const auto text = rtps::decode<ros2::msg::String>(bytes_of(message));
     if (text) return parse_json(text->data);
   }
   return nullptr;

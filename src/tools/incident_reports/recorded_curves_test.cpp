@@ -56,9 +56,9 @@ RULE Overheated
   return rules;
 }
 
-std::string words_of(const ros2::Bytes& bytes) { return std::string(bag::test::text_of(bytes)); }
+std::string words_of(const rtps::Bytes& bytes) { return std::string(bag::test::text_of(bytes)); }
 std::string wheels(double left, std::int32_t gear) {
-  ros2::CdrWriter writer;
+  rtps::CdrWriter writer;
   writer(left, gear);
   return words_of(writer.take());
 }
@@ -79,7 +79,7 @@ struct RoverRecording {
                       schema(4, "a/msg/Scan", "uint8[] ranges\n") + channel(1, 1, "/speed") +
                       channel(2, 2, "/culprit/graph") + channel(3, 3, "/wheels") +
                       channel(4, 4, "/scan") + channel(5, 1, "/unrelated") + channel(6, 1, "/goal");
-    all += message(2, kStart, words_of(ros2::encode(ros2::msg::String{graph})));
+    all += message(2, kStart, words_of(rtps::encode(ros2::msg::String{graph})));
     for (int i = 0; i <= 100; ++i) {
       const std::int64_t at = kStart + i * kSecondInNanoseconds / 10;
       const double speed = i == 77 ? 9 : 0.01 * i;

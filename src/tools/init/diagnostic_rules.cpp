@@ -23,7 +23,7 @@ constexpr std::uint8_t kError = 2;
 
 // How rules call a status, as they write it: by what no other status is called. Empty if there is no
 // such thing.
-std::string called(const ros2::Survey::StatusKey& status, const RobotProfile& seen) {
+std::string called(const link::Survey::StatusKey& status, const RobotProfile& seen) {
   for (const std::string& name : {status.first, status.second}) {
     const auto is_so_called = [&](const auto& other) {
       return other.first.first == name || other.first.second == name;
@@ -35,11 +35,11 @@ std::string called(const ros2::Survey::StatusKey& status, const RobotProfile& se
 }
 
 // A number that goes up and down. A number that only rises is a counter; one that never changes gives no range.
-bool has_range(const ros2::ValueCourse& value) {
+bool has_range(const link::ValueCourse& value) {
   return value.numbers >= kFewestValues && value.others == 0 && value.rose && value.fell;
 }
 
-std::string stale(const ros2::StatusCourse& course, Duration looked) {
+std::string stale(const link::StatusCourse& course, Duration looked) {
   const double period = seconds(looked) / static_cast<double>(course.messages);
   return to_string(rounded_up(std::max(kShortestStale, from_seconds(kPeriodsUntilStale * period))));
 }
@@ -57,7 +57,7 @@ class Limits {
   }
 
  private:
-  void status(const ros2::Survey::StatusKey& key, const ros2::StatusCourse& course) {
+  void status(const link::Survey::StatusKey& key, const link::StatusCourse& course) {
     const std::string name = printable(key.first.empty() ? key.second : key.first);
     const std::string written = called(key, seen_);
     if (written.empty())
@@ -78,7 +78,7 @@ class Limits {
   }
 
   void propose_keys(const std::string& status, const std::string& base,
-                    const ros2::StatusCourse& course) {
+                    const link::StatusCourse& course) {
     std::size_t proposed = 0;
     for (const auto& each : course.keys) {
       const std::string key = as_written(each.first);
@@ -93,7 +93,7 @@ class Limits {
 
   // As far again as what was seen spans, on both sides.
   void propose(const std::string& status, const std::string& base, const std::string& key,
-               const ros2::ValueCourse& value, const std::string& stale_after) {
+               const link::ValueCourse& value, const std::string& stale_after) {
     const std::string name = names_.take(base + "_" + key);
     const double span = value.most - value.least;
     add(Part::Kind::kLimit, status + " " + key,

@@ -252,7 +252,7 @@ TEST(Draft, ToolsAndNamesThatRosDoesNotTakeAreNoComponents) {
     seen.robot.nodes[name] = {.parameters = {}, .lifecycle = "", .pid = 20};
     seen.starts[name] = seen.starts["/robot/camera"];
   }
-  const ros2::ValueCourse varied{
+  const link::ValueCourse varied{
       .numbers = 20, .others = 0, .least = 1, .most = 2, .last = 1, .rose = true, .fell = true};
   seen.statuses[{"evil\nRULE y", ""}] = {20, 0, {{"key", varied}}};
   seen.statuses[{"odd", ""}] = {20, 0, {{"key\nRULE z", varied}}};
@@ -264,7 +264,7 @@ TEST(Draft, ToolsAndNamesThatRosDoesNotTakeAreNoComponents) {
 // A motor that warms up and down, and counts.
 RobotProfile motor() {
   RobotProfile seen = robot();
-  ros2::StatusCourse& course = seen.statuses[{"base: motor 1", "m1"}];
+  link::StatusCourse& course = seen.statuses[{"base: motor 1", "m1"}];
   course.messages = 30;
   course.worst = 1;
   for (int i = 0; i < 30; ++i) {
@@ -301,7 +301,7 @@ TEST(Draft, WhatCulpritSaysOfItselfIsNoPartOfTheRobot) {
   seen.rhythms["/culprit/status"] = {301, 30s, 110ms};
   const std::string before = draft(robot());
   for (const char* status : {"culprit", "culprit: lidar_failed", "culprit: component lidar"}) {
-    ros2::StatusCourse& course = seen.statuses[{status, "culprit"}] = {30, 0, {}};
+    link::StatusCourse& course = seen.statuses[{status, "culprit"}] = {30, 0, {}};
     for (int i = 0; i < 30; ++i) course.keys["failing"].note(std::int64_t{i % 2});
   }
   EXPECT_EQ(draft(seen), before);

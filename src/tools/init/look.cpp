@@ -114,7 +114,7 @@ std::set<std::string> names_of(const LiveInventory& robot) {
 
 }  // namespace
 
-RobotProfile look(ros2::Survey& survey, std::uint32_t domain, Duration time) {
+RobotProfile look(link::Survey& survey, std::uint32_t domain, Duration time) {
   constexpr Duration kTurn = 500ms;
   const Time end = later(live_now(), time);
   const Time half = end - time / 2;

@@ -8,6 +8,6 @@ namespace culprit::init {
 
 // Watches all topics but those of ROS itself and asks all nodes, for `time`; that costs the robot's
 // network one subscriber more for each topic. `domain` is the survey's. The calling thread waits.
-RobotProfile look(ros2::Survey& survey, std::uint32_t domain, Duration time);
+RobotProfile look(link::Survey& survey, std::uint32_t domain, Duration time);
 
 }  // namespace culprit::init

@@ -45,7 +45,7 @@ const Movement* movement_of(const std::string& topic, const std::string& type) {
 }
 
 // "at most 0.3 while it was watched".
-std::string measured(const std::map<std::string, ros2::ValueCourse>& fields) {
+std::string measured(const std::map<std::string, link::ValueCourse>& fields) {
   double most = 0;
   std::size_t values = 0;
   for (const auto& each : fields) {
@@ -82,7 +82,7 @@ std::string interlocks_text(const RobotProfile& seen, Names& names) {
     const auto fields = seen.fields.find(topic);
     proposals += fmt::format(
         "# {} ({}): {}.\n", topic, each.second.type,
-        measured(fields == seen.fields.end() ? std::map<std::string, ros2::ValueCourse>{}
+        measured(fields == seen.fields.end() ? std::map<std::string, link::ValueCourse>{}
                                              : fields->second));
     std::string speed;
     for (const std::string& field : movement->speeds) {

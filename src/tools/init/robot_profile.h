@@ -28,13 +28,13 @@ struct Start {
 
 struct RobotProfile {
   LiveInventory robot;
-  std::map<std::string, ros2::Rhythm> rhythms;  // by topic
+  std::map<std::string, link::Rhythm> rhythms;  // by topic
   // The same for each node that publishes the topic; by topic and node.
-  std::map<std::string, std::map<std::string, ros2::Rhythm>> rhythms_of_publishers;
+  std::map<std::string, std::map<std::string, link::Rhythm>> rhythms_of_publishers;
   std::map<std::string, Start> starts;  // by node, of those whose process is proven
   // For topics that command movements or measure something, by topic and field.
-  std::map<std::string, std::map<std::string, ros2::ValueCourse>> fields;
-  std::map<ros2::Survey::StatusKey, ros2::StatusCourse> statuses;
+  std::map<std::string, std::map<std::string, link::ValueCourse>> fields;
+  std::map<link::Survey::StatusKey, link::StatusCourse> statuses;
   std::set<std::string> came_late;  // nodes that were not there yet after half of the look
   std::set<std::string> left;       // nodes that were there then, and not at its end
   Duration looked{};

@@ -23,23 +23,23 @@ std::string in_milliseconds(Duration time) {
   return fmt::format("{:.0f}ms", std::ceil(seconds(time) * 1000));
 }
 
-ros2::Rhythm rhythm_of(const RobotProfile& seen, const std::string& topic,
+link::Rhythm rhythm_of(const RobotProfile& seen, const std::string& topic,
                        const std::string& node) {
   if (!node.empty()) {
     const auto publishers = seen.rhythms_of_publishers.find(topic);
     if (publishers == seen.rhythms_of_publishers.end()) return {};
     const auto own = publishers->second.find(node);
-    return own == publishers->second.end() ? ros2::Rhythm{} : own->second;
+    return own == publishers->second.end() ? link::Rhythm{} : own->second;
   }
   const auto found = seen.rhythms.find(topic);
-  return found == seen.rhythms.end() ? ros2::Rhythm{} : found->second;
+  return found == seen.rhythms.end() ? link::Rhythm{} : found->second;
 }
 
 }  // namespace
 
 Expected<Duration> silence_of(const RobotProfile& seen, const std::string& topic,
                               const std::string& node) {
-  const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
+  const link::Rhythm rhythm = rhythm_of(seen, topic, node);
   if (rhythm.messages < kFewestMessages)
     return Error{fmt::format("{} messages came, too few for a rhythm", rhythm.messages)};
   const double mean = 1 / rate_of(seen, topic, node);
@@ -53,13 +53,13 @@ Expected<Duration> silence_of(const RobotProfile& seen, const std::string& topic
 }
 
 double rate_of(const RobotProfile& seen, const std::string& topic, const std::string& node) {
-  const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
+  const link::Rhythm rhythm = rhythm_of(seen, topic, node);
   return static_cast<double>(rhythm.messages - 1) / seconds(rhythm.first_to_last);
 }
 
 std::string evidence_of_silence(const RobotProfile& seen, const std::string& topic,
                                 const std::string& node) {
-  const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
+  const link::Rhythm rhythm = rhythm_of(seen, topic, node);
   return fmt::format(
       "# guess: {} had {:.3g} Hz: {} messages, at most {} apart.\n"
       "# With 95 % certainty, less than {:.2g} % of its gaps are longer. The timeout is {:.0f} "

@@ -195,7 +195,7 @@ TEST(Update, ANewNodeHasAFreeName) {
 
 RobotProfile with_motor(double least, double most) {
   RobotProfile seen = two_lidars();
-  ros2::StatusCourse& motor = seen.statuses[{"motor", ""}];
+  link::StatusCourse& motor = seen.statuses[{"motor", ""}];
   motor.messages = 30;
   for (int i = 0; i < 30; ++i) motor.keys["temperature"].note(i % 2 == 0 ? least : most);
   return seen;
@@ -283,7 +283,7 @@ TEST(Update, WhyATopicHasNoRhythmIsNoChange) {
   seen.rhythms["/back/scan"] = {4, 30s, 4s};
   const std::string text = file_of(seen);
   EXPECT_THAT(text, HasSubstr("# /back/scan: 4 messages came"));
-  for (const ros2::Rhythm& other : {ros2::Rhythm{5, 30s, 4s}, ros2::Rhythm{100, 30s, 20s}}) {
+  for (const link::Rhythm& other : {link::Rhythm{5, 30s, 4s}, link::Rhythm{100, 30s, 20s}}) {
     seen.rhythms["/back/scan"] = other;
     EXPECT_EQ(updated(text, seen).text, text);
   }

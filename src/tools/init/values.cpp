@@ -16,7 +16,7 @@ namespace culprit::init {
 namespace {
 
 using namespace std::chrono_literals;
-using ros2::ValueCourse;
+using link::ValueCourse;
 
 constexpr std::size_t kFewestNumbers = 30;
 constexpr std::size_t kFewestTexts = 30;

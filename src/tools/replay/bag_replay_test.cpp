@@ -203,9 +203,9 @@ TEST_F(BagReplayTest, NamesStatusesKeysAndParametersThatAreNotThere) {
   event.node = "/camera";
   for (int i = 0; i < 50; ++i) {
     const std::int64_t at = kBagStart + i * 100 * kMillisecond;
-    recording.messages.push_back({at, "/diagnostics", std::string(text_of(ros2::encode(array)))});
+    recording.messages.push_back({at, "/diagnostics", std::string(text_of(rtps::encode(array)))});
     recording.messages.push_back(
-        {at, "/parameter_events", std::string(text_of(ros2::encode(event)))});
+        {at, "/parameter_events", std::string(text_of(rtps::encode(event)))});
   }
   const Judged judged = judge(written(recording), R"(
 COMPONENT camera NODE /camera
@@ -275,7 +275,7 @@ TEST_F(BagReplayTest, LinesOfALogAreCounted) {
     line.level = i >= 12 && i < 16 ? 40 : 30;
     line.name = i % 2 == 0 ? "arm.camera" : "arm.camera.driver";
     recording.messages.push_back(
-        {kBagStart + i * 1000 * kMillisecond, "/rosout", std::string(text_of(ros2::encode(line)))});
+        {kBagStart + i * 1000 * kMillisecond, "/rosout", std::string(text_of(rtps::encode(line)))});
   }
   const Judged judged = judge(written(recording), kErrors);
   EXPECT_EQ(judged.outcomes[0].times, 1u);
@@ -289,7 +289,7 @@ TEST_F(BagReplayTest, TextsThatCannotBeComparedAreNamed) {
     ros2::msg::String text;
     text.data = i < 50 ? "12" : "off";
     recording.messages.push_back(
-        {kBagStart + i * 100 * kMillisecond, "/s", std::string(text_of(ros2::encode(text)))});
+        {kBagStart + i * 100 * kMillisecond, "/s", std::string(text_of(rtps::encode(text)))});
   }
   const Judged judged = judge(written(recording),
                               "SIGNAL s TOPIC /s FIELD data\nRULE High\n  POLICIES ERROR REPORT\n"

@@ -33,11 +33,9 @@ namespace {
 using namespace culprit;
 using namespace culprit::ros2;
 
-namespace link = culprit_link;
-
 struct Manners {
   std::uint32_t domain = 0;
-  std::uint32_t version = link::kVersion;
+  std::uint32_t version = culprit_link::kVersion;
   bool is_oversized = false;
   bool is_mute = false;
   bool drops = false;
@@ -45,25 +43,28 @@ struct Manners {
   int socket = 0;
 };
 
-link::Quality to_quality(const Qos& qos) {
-  link::Quality quality;
-  quality.is_reliable = qos.reliability == Reliability::kReliable;
-  quality.is_transient_local = qos.durability == Durability::kTransientLocal;
+culprit_link::Quality to_quality(const rtps::Qos& qos) {
+  culprit_link::Quality quality;
+  quality.is_reliable = qos.reliability == rtps::Reliability::kReliable;
+  quality.is_transient_local = qos.durability == rtps::Durability::kTransientLocal;
   return quality;
 }
 
-Qos to_qos(const link::Quality& quality) {
-  Qos qos;
-  qos.reliability = quality.is_reliable ? Reliability::kReliable : Reliability::kBestEffort;
-  qos.durability = quality.is_transient_local ? Durability::kTransientLocal : Durability::kVolatile;
-  qos.history = quality.keeps_all ? History::kKeepAll : History::kKeepLast;
+rtps::Qos to_qos(const culprit_link::Quality& quality) {
+  rtps::Qos qos;
+  qos.reliability =
+      quality.is_reliable ? rtps::Reliability::kReliable : rtps::Reliability::kBestEffort;
+  qos.durability =
+      quality.is_transient_local ? rtps::Durability::kTransientLocal : rtps::Durability::kVolatile;
+  qos.history = quality.keeps_all ? rtps::History::kKeepAll : rtps::History::kKeepLast;
   qos.depth = quality.depth;
   return qos;
 }
 
-link::GraphSeen::Node node_of(const std::string& full_name) {
+culprit_link::GraphSeen::Node node_of(const std::string& full_name) {
   const auto name = parse_node_name(full_name);
-  return name ? link::GraphSeen::Node{name->name_space, name->name} : link::GraphSeen::Node{};
+  return name ? culprit_link::GraphSeen::Node{name->name_space, name->name}
+              : culprit_link::GraphSeen::Node{};
 }
 
 class Peer {
@@ -74,8 +75,8 @@ class Peer {
   int run() {
     const auto join = read_join();
     if (!join) return 1;
-    if (manners_.version != link::kVersion) {
-      put(link::Welcome{manners_.version, "", {}});
+    if (manners_.version != culprit_link::kVersion) {
+      put(culprit_link::Welcome{manners_.version, "", {}});
       return 1;
     }
     ParticipantOptions options;
@@ -87,9 +88,10 @@ class Peer {
     context_ = std::move(*Context::create(executor_, options, std::move(graph)));
     node_ =
         std::move(*Node::create(*context_, {join->name_space, join->name}, Node::Extent::kMinimal));
-    put(link::Welcome{link::kVersion, "rmw_fastrtps_cpp", context_->participant().guid().bytes});
+    put(culprit_link::Welcome{culprit_link::kVersion, "rmw_fastrtps_cpp",
+                              context_->participant().guid().bytes});
     tell_graph_soon();
-    if (manners_.is_oversized) send_all(link::Bytes{0xff, 0xff, 0xff, 0xff, 9});
+    if (manners_.is_oversized) send_all(culprit_link::Bytes{0xff, 0xff, 0xff, 0xff, 9});
     std::thread reading([this] { read_on(); });
     executor_.run();
     reading.join();
@@ -103,10 +105,10 @@ class Peer {
   using Made = std::variant<std::unique_ptr<RawSubscription>, std::unique_ptr<RawPublisher>,
                             std::unique_ptr<ServiceClient>, std::unique_ptr<ServiceServer>>;
 
-  std::optional<link::Join> read_join() {
+  std::optional<culprit_link::Join> read_join() {
     while (true) {
       if (auto frame = reader_.next()) {
-        const auto* join = std::get_if<link::Join>(&*frame);
+        const auto* join = std::get_if<culprit_link::Join>(&*frame);
         return join == nullptr ? std::nullopt : std::optional(*join);
       }
       if (!receive()) return std::nullopt;
@@ -132,7 +134,7 @@ class Peer {
     executor_.stop();
   }
 
-  void send_all(const link::Bytes& bytes) {
+  void send_all(const culprit_link::Bytes& bytes) {
     const MutexLock lock(mutex_);
     std::size_t sent = 0;
     while (sent < bytes.size()) {
@@ -143,9 +145,9 @@ class Peer {
     }
   }
 
-  void put(const link::Frame& frame) {
-    const bool is_welcome = std::holds_alternative<link::Welcome>(frame);
-    if (!manners_.is_mute || is_welcome) send_all(link::encode(frame));
+  void put(const culprit_link::Frame& frame) {
+    const bool is_welcome = std::holds_alternative<culprit_link::Welcome>(frame);
+    if (!manners_.is_mute || is_welcome) send_all(culprit_link::encode(frame));
   }
 
   void tell_graph_soon() {
@@ -157,13 +159,13 @@ class Peer {
   }
 
   void tell_graph() {
-    link::GraphSeen seen;
+    culprit_link::GraphSeen seen;
     for (const Graph::ParticipantView& participant : context_->graph().participants()) {
       for (const std::string& name : participant.nodes) seen.nodes.push_back(node_of(name));
       for (const Graph::OwnedEndpoint& each : participant.endpoints) {
         const GraphEndpoint& endpoint = each.endpoint;
         const bool publishes = endpoint.kind == EndpointKind::kPublisher;
-        const auto node = each.node.empty() ? link::GraphSeen::Node{} : node_of(each.node);
+        const auto node = each.node.empty() ? culprit_link::GraphSeen::Node{} : node_of(each.node);
         if (publishes || endpoint.kind == EndpointKind::kSubscriber) {
           seen.endpoints.push_back({publishes, endpoint.name, endpoint.type, endpoint.type_hash,
                                     each.id.bytes, node, to_quality(endpoint.qos)});
@@ -178,62 +180,64 @@ class Peer {
 
   template <class Thing>
   void keep(std::uint32_t id, Expected<Thing> made) {
-    if (!made) return put(link::Refused{id, made.error()});
+    if (!made) return put(culprit_link::Refused{id, made.error()});
     made_[id] = std::move(*made);
   }
 
-  void carry_out(const link::Subscribe& wanted) {
+  void carry_out(const culprit_link::Subscribe& wanted) {
     const auto tell = [this, id = wanted.id, most = wanted.most](const Sample& sample) {
       if (manners_.drops && sample.identity.sequence % 2 == 0)
-        return put(link::Dropped{++dropped_});
+        return put(culprit_link::Dropped{++dropped_});
       const auto given = sample.payload.first(std::min<std::size_t>(most, sample.payload.size()));
-      put(link::Arrived{id,
-                        sample.identity.writer.bytes,
-                        sample.identity.sequence,
-                        sample.sent.time_since_epoch().count(),
-                        sample.received.time_since_epoch().count(),
-                        static_cast<std::uint32_t>(sample.size),
-                        {given.begin(), given.end()}});
+      put(culprit_link::Arrived{id,
+                                sample.identity.writer.bytes,
+                                sample.identity.sequence,
+                                sample.sent.time_since_epoch().count(),
+                                sample.received.time_since_epoch().count(),
+                                static_cast<std::uint32_t>(sample.size),
+                                {given.begin(), given.end()}});
     };
     keep(wanted.id, RawSubscription::create(node_->entry(), wanted.topic, wanted.type,
                                             to_qos(wanted.quality), PayloadUse::kWhole, tell));
   }
-  void carry_out(const link::Advertise& wanted) {
+  void carry_out(const culprit_link::Advertise& wanted) {
     keep(wanted.id,
          RawPublisher::create(node_->entry(), wanted.topic, wanted.type, to_qos(wanted.quality)));
   }
-  void carry_out(const link::Use& wanted) {
+  void carry_out(const culprit_link::Use& wanted) {
     keep(wanted.id, ServiceClient::create(node_->entry(), {wanted.service, wanted.type},
                                           to_qos(wanted.quality)));
   }
-  void carry_out(const link::Offer& wanted) {
-    keep(wanted.id, ServiceServer::create_slow(
-                        node_->entry(), {wanted.service, wanted.type}, to_qos(wanted.quality),
-                        [this, id = wanted.id](ByteView request, ServiceServer::Answer answer) {
-                          asked_[++last_asked_] = std::move(answer);
-                          put(link::Asked{id, last_asked_, {request.begin(), request.end()}});
-                        }));
+  void carry_out(const culprit_link::Offer& wanted) {
+    keep(wanted.id,
+         ServiceServer::create_slow(
+             node_->entry(), {wanted.service, wanted.type}, to_qos(wanted.quality),
+             [this, id = wanted.id](rtps::ByteView request, ServiceServer::Answer answer) {
+               asked_[++last_asked_] = std::move(answer);
+               put(culprit_link::Asked{id, last_asked_, {request.begin(), request.end()}});
+             }));
   }
-  void carry_out(const link::Remove& wanted) { made_.erase(wanted.id); }
-  void carry_out(const link::Publish& wanted) {
+  void carry_out(const culprit_link::Remove& wanted) { made_.erase(wanted.id); }
+  void carry_out(const culprit_link::Publish& wanted) {
     if (auto* publisher = find<RawPublisher>(wanted.id)) publisher->publish(wanted.payload);
   }
-  void carry_out(const link::Request& wanted) {
+  void carry_out(const culprit_link::Request& wanted) {
     constexpr Duration kForLong = std::chrono::minutes(1);
     auto* client = find<ServiceClient>(wanted.id);
     if (client == nullptr) return;
     if (!manners_.counts.empty())
       std::ofstream(manners_.counts, std::ios::app) << wanted.number << '\n';
-    client->call(wanted.payload, Repeat::kNever, kForLong,
-                 [this, id = wanted.id, number = wanted.number](const CallResult& result) {
-                   if (result.outcome == CallOutcome::kAnswered)
-                     put(link::Reply{id, number, {result.reply.begin(), result.reply.end()}});
-                 });
+    client->call(
+        wanted.payload, Repeat::kNever, kForLong,
+        [this, id = wanted.id, number = wanted.number](const CallResult& result) {
+          if (result.outcome == CallOutcome::kAnswered)
+            put(culprit_link::Reply{id, number, {result.reply.begin(), result.reply.end()}});
+        });
   }
-  void carry_out(const link::Respond& wanted) {
+  void carry_out(const culprit_link::Respond& wanted) {
     if (auto answer = asked_.extract(wanted.number)) answer.mapped()(wanted.payload);
   }
-  void carry_out(const link::Echo& wanted) { put(wanted); }
+  void carry_out(const culprit_link::Echo& wanted) { put(wanted); }
   template <class Other>
   void carry_out(const Other&) {
     executor_.stop();
@@ -248,7 +252,7 @@ class Peer {
   }
 
   const Manners manners_;
-  link::FrameReader reader_;
+  culprit_link::FrameReader reader_;
   Mutex mutex_;  // of the socket's end
   Executor executor_;
   std::unique_ptr<Context> context_;

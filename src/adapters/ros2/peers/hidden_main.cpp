@@ -74,7 +74,7 @@ class Dependent {
     if (auto opened = open_services(hidden); !opened) return opened;
     if (!wishes_.needs_topic.empty()) {
       auto heard = node_->create_subscription<msg::Float64>(
-          "/" + wishes_.needs_topic + "/value", qos::kDefault,
+          "/" + wishes_.needs_topic + "/value", rtps::qos::kDefault,
           [this](const msg::Float64&) { fulfilled_ = live_now(); });
       if (!heard) return Error{heard.error()};
       subscription_ = std::move(*heard);
@@ -103,7 +103,7 @@ class Dependent {
     if (!other) return Error{other.error()};
     hidden_node_ = std::move(*other);
     auto client = hidden_node_->create_client<srv::Trigger>("/" + wishes_.needs_service + "/ask",
-                                                            qos::kServices);
+                                                            rtps::qos::kServices);
     if (!client) return Error{client.error()};
     client_ = std::move(*client);
     return {};

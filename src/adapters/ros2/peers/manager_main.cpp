@@ -48,13 +48,13 @@ class Server {
     name_ = name;
     auto client = ServiceClient::create(
         manager.entry(), {name + "/change_state", std::string(srv::ChangeState::kType)},
-        qos::kServices,
+        rtps::qos::kServices,
         {{name + "/get_state", std::string(srv::GetState::kType)},
-         encode(srv::GetState::Request{})});
+         rtps::encode(srv::GetState::Request{})});
     if (!client) return Error{client.error()};
     change_ = std::move(*client);
     auto bond = manager.create_subscription<msg::Float64>(
-        name + "/value", Qos{.reliability = Reliability::kBestEffort, .depth = 10},
+        name + "/value", rtps::Qos{.reliability = rtps::Reliability::kBestEffort, .depth = 10},
         [this](const msg::Float64&) { heard_ = live_now(); });
     if (!bond) return Error{bond.error()};
     bond_ = std::move(*bond);
@@ -72,12 +72,13 @@ class Server {
     auto answer = answered->get_future();
     srv::ChangeState::Request request;
     request.transition.id = static_cast<std::uint8_t>(transition);
-    change_->call(encode(request), Repeat::kNever, kForEver, [answered](const CallResult& result) {
-      const auto response = result.outcome == CallOutcome::kAnswered
-                                ? decode<srv::ChangeState::Response>(result.reply)
-                                : std::nullopt;
-      answered->set_value(response && response->success);
-    });
+    change_->call(
+        rtps::encode(request), Repeat::kNever, kForEver, [answered](const CallResult& result) {
+          const auto response = result.outcome == CallOutcome::kAnswered
+                                    ? rtps::decode<srv::ChangeState::Response>(result.reply)
+                                    : std::nullopt;
+          answered->set_value(response && response->success);
+        });
     return answer.get();
   }
 

@@ -72,7 +72,7 @@ struct CancelGoal {
 // action_msgs/msg/GoalStatus
 enum class Status : std::int8_t { kExecuting = 2, kSucceeded = 4, kCanceled = 5, kAborted = 6 };
 
-inline constexpr ros2::Qos kStatusQos{.durability = ros2::Durability::kTransientLocal, .depth = 1};
+inline constexpr rtps::Qos kStatusQos{.durability = rtps::Durability::kTransientLocal, .depth = 1};
 
 template <class Action>
 class ActionServer {
@@ -99,9 +99,9 @@ class ActionServer {
     });
     if (!cancel) return Error{cancel.error()};
     auto result = ros2::ServiceServer::create_slow(
-        node.entry(), {part("get_result"), Types::GetResult::kType}, ros2::qos::kServices,
-        [this](ros2::ByteView request, const ros2::ServiceServer::Answer& answer) {
-          if (const auto asked = ros2::decode<typename Types::GetResult::Request>(request))
+        node.entry(), {part("get_result"), Types::GetResult::kType}, rtps::qos::kServices,
+        [this](rtps::ByteView request, const ros2::ServiceServer::Answer& answer) {
+          if (const auto asked = rtps::decode<typename Types::GetResult::Request>(request))
             wait_for_result(asked->id, answer);
         });
     if (!result) return Error{result.error()};
@@ -165,11 +165,11 @@ class ActionServer {
       if (goal.waiting.size() < kMostKept) goal.waiting.push_back(answer);
       return;
     }
-    answer(ros2::encode(typename Types::GetResult::Response{}));
+    answer(rtps::encode(typename Types::GetResult::Response{}));
   }
 
-  static ros2::Bytes response(const Kept& goal) {
-    return ros2::encode(
+  static rtps::Bytes response(const Kept& goal) {
+    return rtps::encode(
         typename Types::GetResult::Response{static_cast<std::int8_t>(goal.status), goal.result});
   }
 

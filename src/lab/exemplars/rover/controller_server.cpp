@@ -31,7 +31,7 @@ class ControllerServer final : public RoverNode {
   void set_up() override {
     offer(twist_, "/cmd_vel_nav");
     hear<msg::TFMessage>("/tf", {.depth = 100}, [this](const auto& tf) { tf_.add(tf); });
-    hear<msg::LaserScan>("/scan", ros2::qos::kSensorData, [this](const msg::LaserScan& scan) {
+    hear<msg::LaserScan>("/scan", rtps::qos::kSensorData, [this](const msg::LaserScan& scan) {
       const auto robot = tf_.in_odom();
       if (!robot || has("costmap_frozen") || scan.header.frame_id != "laser") return;
       obstacles_ = obstacles_in(scan, *robot, 1.5);

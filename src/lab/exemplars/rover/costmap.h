@@ -25,7 +25,7 @@ class Costmap {
     if (!made) return Error{made.error()};
     node_ = std::move(*made);
     auto grid = node_->node().create_publisher<msg::OccupancyGrid>(
-        "/" + name_ + "/costmap", {.durability = ros2::Durability::kTransientLocal, .depth = 1});
+        "/" + name_ + "/costmap", {.durability = rtps::Durability::kTransientLocal, .depth = 1});
     if (!grid) return Error{grid.error()};
     grid_.emplace(std::move(*grid));
     node_->trigger(ros2::TransitionId::kConfigure);

@@ -16,8 +16,8 @@ class LidarDriver final : public RoverNode {
 
  private:
   void set_up() override {
-    offer(scan_, "/scan", ros2::qos::kSensorData);
-    hear<msg::LaserScan>("/hardware/lidar", ros2::qos::kSensorData,
+    offer(scan_, "/scan", rtps::qos::kSensorData);
+    hear<msg::LaserScan>("/hardware/lidar", rtps::qos::kSensorData,
                          [this](const msg::LaserScan& scan) { on_scan(scan); });
   }
 
@@ -47,8 +47,8 @@ class CameraDriver final : public RoverNode {
 
  private:
   void set_up() override {
-    offer(image_, "/camera/image_raw", ros2::qos::kSensorData);
-    hear<ros2::msg::Image>("/hardware/camera", ros2::qos::kSensorData,
+    offer(image_, "/camera/image_raw", rtps::qos::kSensorData);
+    hear<ros2::msg::Image>("/hardware/camera", rtps::qos::kSensorData,
                            [this](ros2::msg::Image image) {
                              const bool is_long = parameter<double>("exposure") > 1;
                              if (has("stall") || (is_long && ++count_ % 8 != 0)) return;
@@ -76,8 +76,8 @@ class ImuDriver final : public RoverNode {
 
  private:
   void set_up() override {
-    offer(imu_, "/imu", ros2::qos::kSensorData);
-    hear<msg::Imu>("/hardware/imu", ros2::qos::kSensorData, [this](msg::Imu imu) {
+    offer(imu_, "/imu", rtps::qos::kSensorData);
+    hear<msg::Imu>("/hardware/imu", rtps::qos::kSensorData, [this](msg::Imu imu) {
       if (has("stall")) return;
       if (has("bias")) imu.angular_velocity.z += 0.5;
       imu_->publish(imu);
@@ -102,16 +102,16 @@ class BaseDriver final : public RoverNode {
     offer(motors_, "/hardware/motors");
     offer(odom_, "/odom");
     offer(tf_, "/tf", {.depth = 100});
-    offer(tf_static_, "/tf_static", {.durability = ros2::Durability::kTransientLocal, .depth = 1});
+    offer(tf_static_, "/tf_static", {.durability = rtps::Durability::kTransientLocal, .depth = 1});
     if (tf_static_) tf_static_->publish({{{header_now("base_link"), "laser", {}}}});
     offer(battery_, "/battery_state");
-    hear<msg::Twist>("/cmd_vel", ros2::qos::kDefault, [this](const msg::Twist& twist) {
+    hear<msg::Twist>("/cmd_vel", rtps::qos::kDefault, [this](const msg::Twist& twist) {
       command_ = twist;
       commanded_ = ros2::Executor::Clock::now();
     });
-    hear<msg::Odometry>("/hardware/wheels", ros2::qos::kSensorData,
+    hear<msg::Odometry>("/hardware/wheels", rtps::qos::kSensorData,
                         [this](const msg::Odometry& wheels) { on_wheels(wheels.twist.twist); });
-    hear<msg::BatteryState>("/hardware/battery", ros2::qos::kSensorData,
+    hear<msg::BatteryState>("/hardware/battery", rtps::qos::kSensorData,
                             [this](const msg::BatteryState& state) { battery_->publish(state); });
     every(50ms, [this] {
       const bool is_fresh = ros2::Executor::Clock::now() - commanded_ < 500ms;

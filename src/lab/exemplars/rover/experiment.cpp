@@ -56,15 +56,15 @@ Expected<void> Experiment::open() {
     controls_[std::string(process.name)] = std::move(*created);
   }
   auto truth = node_->create_subscription<msg::Odometry>(
-      "/world/truth", ros2::qos::kSensorData,
+      "/world/truth", rtps::qos::kSensorData,
       [this](const msg::Odometry& message) { on_truth(message); });
   auto pose = node_->create_subscription<msg::PoseWithCovarianceStamped>(
-      "/amcl_pose", ros2::qos::kSensorData, [this](const msg::PoseWithCovarianceStamped& message) {
+      "/amcl_pose", rtps::qos::kSensorData, [this](const msg::PoseWithCovarianceStamped& message) {
         const MutexLock lock(mutex_);
         if (robot_) seen_.pose_error_m = distance(*robot_, to_pose(message.pose.pose));
       });
   auto diagnostics = node_->create_subscription<ros2::msg::DiagnosticArray>(
-      "/diagnostics", ros2::qos::kDefault,
+      "/diagnostics", rtps::qos::kDefault,
       [this](const ros2::msg::DiagnosticArray& array) { on_diagnostics(array); });
   for (auto* made : {&truth, &pose, &diagnostics}) {
     if (!*made) return Error{made->error()};

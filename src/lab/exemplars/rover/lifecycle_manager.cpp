@@ -28,9 +28,9 @@ class Server {
     name_ = name;
     auto client = ros2::ServiceClient::create(
         manager.entry(), {name_ + "/change_state", std::string(ros2::srv::ChangeState::kType)},
-        ros2::qos::kServices,
+        rtps::qos::kServices,
         {{name_ + "/get_state", std::string(ros2::srv::GetState::kType)},
-         ros2::encode(ros2::srv::GetState::Request{})});
+         rtps::encode(ros2::srv::GetState::Request{})});
     if (!client) return Error{client.error()};
     change_ = std::move(*client);
     return {};
@@ -49,11 +49,11 @@ class Server {
     auto answer = answered->get_future();
     ros2::srv::ChangeState::Request request;
     request.transition.id = static_cast<std::uint8_t>(transition);
-    change_->call(ros2::encode(request), ros2::Repeat::kNever, kForEver,
+    change_->call(rtps::encode(request), ros2::Repeat::kNever, kForEver,
                   [answered](const ros2::CallResult& result) {
                     const auto response =
                         result.outcome == ros2::CallOutcome::kAnswered
-                            ? ros2::decode<ros2::srv::ChangeState::Response>(result.reply)
+                            ? rtps::decode<ros2::srv::ChangeState::Response>(result.reply)
                             : std::nullopt;
                     answered->set_value(response && response->success);
                   });
@@ -81,7 +81,7 @@ class LifecycleManager {
       if (auto opened = servers_.back()->open(*node_, each); !opened) return opened;
     }
     if (auto done = node_->parameters().declare(names.name, names.value); !done) return done;
-    auto bonds = node_->create_subscription<msg::BondStatus>("/bond", ros2::qos::kDefault,
+    auto bonds = node_->create_subscription<msg::BondStatus>("/bond", rtps::qos::kDefault,
                                                              [this](const msg::BondStatus& bond) {
                                                                for (const auto& server : servers_)
                                                                  server->on_bond(bond);
@@ -91,9 +91,9 @@ class LifecycleManager {
     auto manage = ros2::ServiceServer::create_slow(
         node_->entry(),
         {node_->name().full() + "/manage_nodes", std::string(srv::ManageLifecycleNodes::kType)},
-        ros2::qos::kServices,
-        [this](ros2::ByteView request, const ros2::ServiceServer::Answer& answer) {
-          const auto asked = ros2::decode<srv::ManageLifecycleNodes::Request>(request);
+        rtps::qos::kServices,
+        [this](rtps::ByteView request, const ros2::ServiceServer::Answer& answer) {
+          const auto asked = rtps::decode<srv::ManageLifecycleNodes::Request>(request);
           const MutexLock lock(mutex_);
           if (asked) requests_.push_back({asked->command, answer});
         });
@@ -120,7 +120,7 @@ class LifecycleManager {
       for (std::size_t s = 0; s < servers_.size(); ++s) manager.on_bond(s, servers_[s]->heard());
       for (const Request& request : take_requests()) {
         manager.ask(request.command, [answer = request.answer](bool is_done) {
-          answer(ros2::encode(srv::ManageLifecycleNodes::Response{is_done}));
+          answer(rtps::encode(srv::ManageLifecycleNodes::Response{is_done}));
         });
       }
       const bool was_resetting = manager.is_resetting();

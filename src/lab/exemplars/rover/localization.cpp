@@ -9,7 +9,7 @@
 namespace culprit::rover {
 namespace {
 
-constexpr ros2::Qos kLateJoiners{.durability = ros2::Durability::kTransientLocal, .depth = 1};
+constexpr rtps::Qos kLateJoiners{.durability = rtps::Durability::kTransientLocal, .depth = 1};
 
 // map_server: /map, for those who come later, too.
 class MapServer final : public RoverNode {
@@ -46,7 +46,7 @@ class Amcl final : public RoverNode {
     auto map = node().create_subscription<msg::OccupancyGrid>(
         "/map", kLateJoiners, [this](const msg::OccupancyGrid& grid) { on_map(grid); });
     if (map) map_ = std::move(*map);
-    hear<msg::LaserScan>("/scan", ros2::qos::kSensorData,
+    hear<msg::LaserScan>("/scan", rtps::qos::kSensorData,
                          [this](const msg::LaserScan& scan) { on_scan(scan); });
     serve<srv::Empty>("/reinitialize_global_localization", [this](const auto&) {
       is_lost_ = true;

@@ -19,7 +19,7 @@ class MissionNode final : public RoverNode {
   void set_up() override {
     join(client_);
     hear<ActionTypes<act::NavigateToPose>::Feedback>(
-        "/navigate_to_pose/_action/feedback", ros2::qos::kDefault,
+        "/navigate_to_pose/_action/feedback", rtps::qos::kDefault,
         [this](const auto&) { heard_ = ros2::Executor::Clock::now(); });
     every(500ms, [this] {
       // A navigator that was replaced does not know the goal.

@@ -18,13 +18,13 @@ class PlannerServer final : public RoverNode {
   void set_up() override {
     hear<msg::TFMessage>("/tf", {.depth = 100}, [this](const auto& tf) { tf_.add(tf); });
     auto map = node().create_subscription<msg::OccupancyGrid>(
-        "/map", {.durability = ros2::Durability::kTransientLocal, .depth = 1},
+        "/map", {.durability = rtps::Durability::kTransientLocal, .depth = 1},
         [this](const msg::OccupancyGrid& grid) {
           map_ = GridMap::from_message(grid);
           costs_.emplace(*map_, std::vector<Pose2>{});
         });
     if (map) map_subscription_ = std::move(*map);
-    hear<msg::LaserScan>("/scan", ros2::qos::kSensorData, [this](const msg::LaserScan& scan) {
+    hear<msg::LaserScan>("/scan", rtps::qos::kSensorData, [this](const msg::LaserScan& scan) {
       const auto robot = tf_.in_map();
       if (!robot || !map_ || has("costmap_frozen") || ++scans_ % 5 != 0) return;
       costs_.emplace(*map_, obstacles_in(scan, *robot, 2));

@@ -46,7 +46,7 @@ Expected<void> RoverNode::open_managed(ros2::Context& context, ros2::NodeName na
   managed_ = std::move(*made);
   offer(bond_, "/bond");
   // As Nav2's servers, which hear all bonds, and only look for their own.
-  auto bonds = note(node().create_subscription<msg::BondStatus>("/bond", ros2::qos::kDefault,
+  auto bonds = note(node().create_subscription<msg::BondStatus>("/bond", rtps::qos::kDefault,
                                                                 [](const auto&) {}));
   if (bonds) bonds_ = std::move(*bonds);
   return {};

@@ -60,12 +60,12 @@ class RoverNode {
   // For set_up(). If one cannot be created, the node does not come up.
   template <class Message>
   void offer(std::optional<ros2::Publisher<Message>>& place, std::string_view topic,
-             const ros2::Qos& qos = ros2::qos::kDefault) {
+             const rtps::Qos& qos = rtps::qos::kDefault) {
     place.reset();
     if (auto made = note(node().create_publisher<Message>(topic, qos))) place = std::move(*made);
   }
   template <class Message>
-  void hear(std::string_view topic, const ros2::Qos& qos,
+  void hear(std::string_view topic, const rtps::Qos& qos,
             std::function<void(const Message&)> callback) {
     auto made = note(node().create_subscription<Message>(
         topic, qos, [this, callback = std::move(callback)](const Message& message) {

@@ -17,7 +17,7 @@ class VelocitySmoother final : public RoverNode {
  private:
   void set_up() override {
     offer(out_, "/cmd_vel_smoothed");
-    hear<msg::Twist>("/cmd_vel_nav", ros2::qos::kDefault, [this](const msg::Twist& twist) {
+    hear<msg::Twist>("/cmd_vel_nav", rtps::qos::kDefault, [this](const msg::Twist& twist) {
       wanted_ = twist;
       heard_ = ros2::Executor::Clock::now();
     });
@@ -33,7 +33,7 @@ class VelocitySmoother final : public RoverNode {
     given_.linear.x = toward(given_.linear.x, wanted_.linear.x, 0.08);
     given_.angular.z = toward(given_.angular.z, wanted_.angular.z, 0.3);
     if (has("best_effort") && !std::exchange(is_best_effort_, true))
-      offer(out_, "/cmd_vel_smoothed", ros2::qos::kSensorData);
+      offer(out_, "/cmd_vel_smoothed", rtps::qos::kSensorData);
     if (out_) out_->publish(given_);
   }
 
@@ -55,14 +55,14 @@ class TwistMux final : public RoverNode {
 
   void set_up() override {
     offer(out_, "/cmd_vel");
-    hear<msg::Twist>("/cmd_vel_joy", ros2::qos::kDefault, [this](const msg::Twist& twist) {
+    hear<msg::Twist>("/cmd_vel_joy", rtps::qos::kDefault, [this](const msg::Twist& twist) {
       by_hand_ = Clock::now();
       pass(twist);
     });
-    hear<msg::Twist>("/cmd_vel_smoothed", ros2::qos::kDefault, [this](const msg::Twist& twist) {
+    hear<msg::Twist>("/cmd_vel_smoothed", rtps::qos::kDefault, [this](const msg::Twist& twist) {
       if (Clock::now() - by_hand_ > 500ms) pass(twist);
     });
-    hear<ros2::msg::Bool>("/e_stop", ros2::qos::kDefault, [this](const ros2::msg::Bool& stop) {
+    hear<ros2::msg::Bool>("/e_stop", rtps::qos::kDefault, [this](const ros2::msg::Bool& stop) {
       if (!stop.data) released_ = Clock::now();
       if (stop.data) released_ = {};
     });

@@ -22,13 +22,13 @@ class WorldNode final : public RoverNode {
 
  private:
   void set_up() override {
-    offer(lidar_, "/hardware/lidar", ros2::qos::kSensorData);
-    offer(imu_, "/hardware/imu", ros2::qos::kSensorData);
-    offer(wheels_, "/hardware/wheels", ros2::qos::kSensorData);
-    offer(battery_, "/hardware/battery", ros2::qos::kSensorData);
-    offer(camera_, "/hardware/camera", ros2::qos::kSensorData);
-    offer(truth_, "/world/truth", ros2::qos::kSensorData);
-    hear<msg::Twist>("/hardware/motors", ros2::qos::kDefault, [this](const msg::Twist& twist) {
+    offer(lidar_, "/hardware/lidar", rtps::qos::kSensorData);
+    offer(imu_, "/hardware/imu", rtps::qos::kSensorData);
+    offer(wheels_, "/hardware/wheels", rtps::qos::kSensorData);
+    offer(battery_, "/hardware/battery", rtps::qos::kSensorData);
+    offer(camera_, "/hardware/camera", rtps::qos::kSensorData);
+    offer(truth_, "/world/truth", rtps::qos::kSensorData);
+    hear<msg::Twist>("/hardware/motors", rtps::qos::kDefault, [this](const msg::Twist& twist) {
       world_.drive(twist.linear.x, twist.angular.z);
     });
     every(kTick, [this] { tick(); });

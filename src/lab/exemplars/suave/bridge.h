@@ -19,7 +19,7 @@ class Bridge : private simulation::Watcher {
 
   // The topic's field "data" as std_msgs/Bool, Float32 or String.
   template <class Message>
-  Expected<void> carry(simulation::TopicBase& topic, const ros2::Qos& qos = ros2::qos::kDefault) {
+  Expected<void> carry(simulation::TopicBase& topic, const rtps::Qos& qos = rtps::qos::kDefault) {
     auto made = node_.create_publisher<Message>(topic.name(), qos);
     if (!made) return Error{made.error()};
     auto publisher = std::make_shared<ros2::Publisher<Message>>(std::move(*made));

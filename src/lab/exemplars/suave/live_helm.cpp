@@ -25,7 +25,7 @@ Expected<void> LiveHelm::open(ros2::Node& node) {
   if (!setpoints) return Error{setpoints.error()};
   setpoints_.emplace(std::move(*setpoints));
   auto autopilot = node.create_client<ros2::srv::SetParameters>(
-      std::string(model::nodes::kAutopilot) + "/set_parameters", ros2::qos::kParameterServices);
+      std::string(model::nodes::kAutopilot) + "/set_parameters", rtps::qos::kParameterServices);
   if (!autopilot) return Error{autopilot.error()};
   autopilot_ = std::move(*autopilot);
   auto battery = node.create_client<ros2::srv::Trigger>(services::kRecharge);
@@ -42,7 +42,7 @@ Expected<void> LiveHelm::subscribe(ros2::Node& node) {
   };
   for (auto& opened :
        {keep(node.create_subscription<msg::PoseStamped>(
-            topics::kPose, ros2::qos::kSensorData,
+            topics::kPose, rtps::qos::kSensorData,
             [this](const msg::PoseStamped& pose) { seen_ = msg::to_position(pose); })),
         keep(node.create_subscription<msg::PoseStamped>(
             topics::kHome, kLatched,

@@ -32,7 +32,7 @@ inline constexpr const char* kRecharge = "/battery_monitor/recharge";
 }  // namespace services
 
 // Late joiners receive the last message.
-inline constexpr ros2::Qos kLatched{.durability = ros2::Durability::kTransientLocal, .depth = 1};
+inline constexpr rtps::Qos kLatched{.durability = rtps::Durability::kTransientLocal, .depth = 1};
 
 inline constexpr const char* kModeMarker = "system_mode_marker";  // of nodes without parameters
 

@@ -33,7 +33,7 @@ Expected<void> MissionObserver::open(const ros2::ParticipantOptions& participant
 Expected<void> MissionObserver::subscribe() {
   simulation::World world(0);
   const model::Topics robot(world);  // for the names of its topics
-  const auto on = [this]<class Message>(const std::string& topic, const ros2::Qos& qos,
+  const auto on = [this]<class Message>(const std::string& topic, const rtps::Qos& qos,
                                         std::function<void(const Message&)> see) -> Expected<void> {
     auto made = node_->create_subscription<Message>(
         topic, qos, [this, see = std::move(see)](const Message& message) {
@@ -56,7 +56,7 @@ Expected<void> MissionObserver::subscribe() {
            std::function([this](const Bool& is_detected) CULPRIT_REQUIRES(mutex_) {
              if (is_detected.data && !seen_.found_s) seen_.found_s = robot_s();
            })),
-        on(robot.distance.name(), ros2::qos::kDefault,
+        on(robot.distance.name(), rtps::qos::kDefault,
            std::function([this](const Float32& metres)
                              CULPRIT_REQUIRES(mutex_) { seen_.inspected_m = metres.data; })),
         on(std::string(topics::kDone), kLatched,

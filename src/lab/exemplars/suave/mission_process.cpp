@@ -65,9 +65,9 @@ Expected<void> MissionProcess::open_modes(const char* system) {
   const std::string name = system;
   auto client = ros2::ServiceClient::create(
       node_->entry(), {name + "/change_mode", std::string(srv::ChangeMode::kType)},
-      ros2::qos::kServices,
+      rtps::qos::kServices,
       {{name + "/get_mode", std::string(srv::GetMode::kType)},
-       ros2::encode(srv::GetMode::Request{})});
+       rtps::encode(srv::GetMode::Request{})});
   if (!client) return Error{client.error()};
   modes_[name] = std::move(*client);
   return {};
@@ -76,10 +76,10 @@ Expected<void> MissionProcess::open_modes(const char* system) {
 // A mode is known when the mode manager is there and has heard of the node.
 void MissionProcess::wait_for(const std::string& system) {
   modes_.at(system)->probe()->call(
-      ros2::encode(srv::GetMode::Request{}), ros2::Repeat::kUntilAnswered, kOthersComingUp,
+      rtps::encode(srv::GetMode::Request{}), ros2::Repeat::kUntilAnswered, kOthersComingUp,
       [this, system](const ros2::CallResult& result) {
         const auto response = result.outcome == ros2::CallOutcome::kAnswered
-                                  ? ros2::decode<srv::GetMode::Response>(result.reply)
+                                  ? rtps::decode<srv::GetMode::Response>(result.reply)
                                   : std::nullopt;
         tasks_->post([this, system, mode = response ? response->current_mode : kUnknownMode] {
           on_mode(system, mode);
@@ -113,7 +113,7 @@ void MissionProcess::begin() {
 
 void MissionProcess::change_mode(const char* system, const char* mode) {
   modes_.at(system)->call(
-      ros2::encode(srv::ChangeMode::Request{mode}), ros2::Repeat::kNever, kModePatience,
+      rtps::encode(srv::ChangeMode::Request{mode}), ros2::Repeat::kNever, kModePatience,
       [this, system = std::string(system)](const ros2::CallResult& result) {
         if (result.outcome == ros2::CallOutcome::kAnswered) return;
         node_->log(ros2::Severity::kError, "the mode of " + system + " was not changed");

@@ -40,7 +40,7 @@ Expected<void> VehicleProcess::open_nodes(ros2::Context& context) {
 
 Expected<void> VehicleProcess::open_topics() {
   ros2::Node& node = *nodes_.front();
-  auto poses = node.create_publisher<msg::PoseStamped>(topics::kPose, ros2::qos::kSensorData);
+  auto poses = node.create_publisher<msg::PoseStamped>(topics::kPose, rtps::qos::kSensorData);
   if (!poses) return Error{poses.error()};
   poses_.emplace(std::move(*poses));
   auto home = node.create_publisher<msg::PoseStamped>(topics::kHome, kLatched);
@@ -50,7 +50,7 @@ Expected<void> VehicleProcess::open_topics() {
   if (!first_point) return Error{first_point.error()};
   first_point_.emplace(std::move(*first_point));
   auto setpoints = node.create_subscription<msg::PoseStamped>(
-      topics::kSetpoint, ros2::qos::kDefault, [this](const msg::PoseStamped& setpoint) {
+      topics::kSetpoint, rtps::qos::kDefault, [this](const msg::PoseStamped& setpoint) {
         if (!autopilot_) return;
         pace_->catch_up();
         autopilot_->vehicle().go_to(msg::to_position(setpoint));

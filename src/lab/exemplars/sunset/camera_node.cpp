@@ -24,7 +24,7 @@ Expected<void> CameraNode::activate() {
   auto kept = keep(publisher_, node().create_publisher<msg::Image>(topics::kRgbCamera));
   if (!kept) return kept;
   return keep(subscription_, node().create_subscription<msg::Image>(
-                                 topics::kRgbRaw, ros2::qos::kDefault,
+                                 topics::kRgbRaw, rtps::qos::kDefault,
                                  [this](const msg::Image& frame) { on_frame(frame); }));
 }
 

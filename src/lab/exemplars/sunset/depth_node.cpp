@@ -17,7 +17,7 @@ Expected<void> DepthNode::activate() {
   auto kept = keep(publisher_, node().create_publisher<msg::Image>(topics::kDepthCamera));
   if (!kept) return kept;
   return keep(subscription_, node().create_subscription<msg::Image>(
-                                 topics::kDepthRaw, ros2::qos::kDefault,
+                                 topics::kDepthRaw, rtps::qos::kDefault,
                                  [this](const msg::Image& frame) { on_frame(frame); }));
 }
 

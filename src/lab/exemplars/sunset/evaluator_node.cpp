@@ -33,7 +33,7 @@ Expected<void> EvaluatorNode::open(ros2::Context& context) {
 
 Expected<std::unique_ptr<ros2::Subscription>> EvaluatorNode::subscribe(
     std::string_view topic, void (TruthBuffer::*add)(msg::Image)) {
-  return node_->create_subscription<msg::Image>(topic, ros2::qos::kDefault,
+  return node_->create_subscription<msg::Image>(topic, rtps::qos::kDefault,
                                                 [this, add](const msg::Image& picture) {
                                                   (buffer_.*add)(picture);
                                                   judge();

@@ -17,7 +17,7 @@ Expected<void> ImageEnhancementNode::activate() {
   auto kept = keep(publisher_, node().create_publisher<msg::Image>(topics::kRgbEnhanced));
   if (!kept) return kept;
   return keep(subscription_, node().create_subscription<msg::Image>(
-                                 topics::kRgbCamera, ros2::qos::kDefault,
+                                 topics::kRgbCamera, rtps::qos::kDefault,
                                  [this](const msg::Image& frame) { on_frame(frame); }));
 }
 

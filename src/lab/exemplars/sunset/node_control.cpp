@@ -17,17 +17,17 @@ Expected<std::unique_ptr<NodeControl>> NodeControl::create(ros2::Node& from,
 
 Expected<void> NodeControl::open(ros2::Node& from) {
   auto set = from.create_client<srv::SetParameters>(target_ + "/set_parameters",
-                                                    ros2::qos::kParameterServices);
+                                                    rtps::qos::kParameterServices);
   auto get = from.create_client<srv::GetParameters>(target_ + "/get_parameters",
-                                                    ros2::qos::kParameterServices);
+                                                    rtps::qos::kParameterServices);
   auto state = from.create_client<srv::GetState>(target_ + "/get_state");
   // A transition is asked for once only, and so needs a probe (service_client.h).
   const auto name = [this](std::string_view service, std::string_view type) {
     return ros2::ServiceName{target_ + std::string(service), std::string(type)};
   };
   auto change = ros2::ServiceClient::create(
-      from.entry(), name("/change_state", srv::ChangeState::kType), ros2::qos::kServices,
-      {name("/get_state", srv::GetState::kType), ros2::encode(srv::GetState::Request{})});
+      from.entry(), name("/change_state", srv::ChangeState::kType), rtps::qos::kServices,
+      {name("/get_state", srv::GetState::kType), rtps::encode(srv::GetState::Request{})});
   if (!set) return Error{set.error()};
   if (!get) return Error{get.error()};
   if (!state) return Error{state.error()};

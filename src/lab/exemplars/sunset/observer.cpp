@@ -22,16 +22,16 @@ Observer::Observer(Duration robot_second)
 Expected<void> Observer::open(ros2::Node& node) {
   // Only that it came: the pictures are the evaluator's business.
   auto segmentations = ros2::RawSubscription::create(
-      node.entry(), topics::kSegmentation, msg::Image::kType, ros2::qos::kSensorData,
+      node.entry(), topics::kSegmentation, msg::Image::kType, rtps::qos::kSensorData,
       ros2::PayloadUse::kHeader, [this](const ros2::Sample&) { on_segmentation(); });
   if (!segmentations) return Error{segmentations.error()};
   segmentations_ = std::move(*segmentations);
   auto ious = node.create_subscription<msg::Float64>(
-      topics::kIou, ros2::qos::kDefault, [this](const msg::Float64& iou) { on_iou(iou.data); });
+      topics::kIou, rtps::qos::kDefault, [this](const msg::Float64& iou) { on_iou(iou.data); });
   if (!ious) return Error{ious.error()};
   ious_ = std::move(*ious);
   auto diagnostics = node.create_subscription<msg::DiagnosticArray>(
-      topics::kDiagnostics, ros2::qos::kDefault,
+      topics::kDiagnostics, rtps::qos::kDefault,
       [this](const msg::DiagnosticArray& array) { on_diagnostics(array); });
   if (!diagnostics) return Error{diagnostics.error()};
   diagnostics_ = std::move(*diagnostics);

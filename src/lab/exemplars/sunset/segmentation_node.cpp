@@ -34,7 +34,7 @@ Expected<void> SegmentationNode::activate() {
   auto kept = keep(publisher_, node().create_publisher<msg::Image>(topics::kSegmentation));
   if (!kept) return kept;
   return keep(subscription_, node().create_subscription<FusedMessage>(
-                                 topics::kSensorsFused, ros2::qos::kDefault,
+                                 topics::kSensorsFused, rtps::qos::kDefault,
                                  [this](const FusedMessage& fused) { on_fused(fused); }));
 }
 

@@ -35,7 +35,7 @@ Expected<void> SensorFusionNode::activate() {
   auto kept = keep(publisher_, node().create_publisher<FusedMessage>(topics::kSensorsFused));
   if (!kept) return kept;
   kept = keep(depth_subscription_,
-              node().create_subscription<msg::Image>(topics::kDepthCamera, ros2::qos::kDefault,
+              node().create_subscription<msg::Image>(topics::kDepthCamera, rtps::qos::kDefault,
                                                      [this](const msg::Image& picture) {
                                                        buffer_.add_depth(picture);
                                                        on_arrival();
@@ -63,7 +63,7 @@ Expected<void> SensorFusionNode::on_set(const msg::Parameter& change) {
 
 Expected<void> SensorFusionNode::take_rgb_from(const std::string& topic) {
   return keep(rgb_subscription_, node().create_subscription<msg::Image>(
-                                     topic, ros2::qos::kDefault, [this](const msg::Image& picture) {
+                                     topic, rtps::qos::kDefault, [this](const msg::Image& picture) {
                                        buffer_.add_rgb(picture);
                                        on_arrival();
                                      }));

@@ -46,7 +46,7 @@ Watcher::Watcher(const ros2::ParticipantOptions& participant)
   }
   for (const std::string_view topic : kWatched) {
     subscriptions_.push_back(must(ros2::RawSubscription::create(
-        node_->entry(), topic, type_of(topic), ros2::qos::kSensorData, ros2::PayloadUse::kHeader,
+        node_->entry(), topic, type_of(topic), rtps::qos::kSensorData, ros2::PayloadUse::kHeader,
         [this, topic](const ros2::Sample&) {
           const MutexLock lock(mutex_);
           ++messages_[topic];
@@ -54,7 +54,7 @@ Watcher::Watcher(const ros2::ParticipantOptions& participant)
         })));
   }
   diagnostics_ = must(node_->create_subscription<ros2::msg::DiagnosticArray>(
-      topics::kDiagnostics, ros2::qos::kDefault,
+      topics::kDiagnostics, rtps::qos::kDefault,
       [this](const ros2::msg::DiagnosticArray& array) { on_diagnostics(array); }));
   thread_ = std::thread([this] { executor_.run(); });
 }
