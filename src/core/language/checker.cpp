@@ -262,9 +262,10 @@ class Checker {
       rule.never_fires = is_never(true, rule.trigger, rules_);
       check_conditions(rule, rules_, diagnostics_);
       check_last_resort(rule, rules_, diagnostics_);
+      check_cooldown(rule, rules_, diagnostics_);
       check_true_when_well(rule, rules_, diagnostics_);
       check_compared_values(rule, rules_, diagnostics_);
-      check_short_impacts(*rule.written, rules_, diagnostics_);
+      check_impacts(*rule.written, rules_, diagnostics_);
     }
     // Declared components come first, in the order of the file.
     for (std::size_t i = 0; i < file_.components.size(); ++i) {

@@ -268,6 +268,15 @@ TEST(Checker, LooksUpUndeclaredNamesUnlessStrict) {
             (std::vector<std::string>{"R012", "R012", "R012"}));
 }
 
+// Whether such an impact may be meant depends on how long its cycles take.
+TEST(Checker, TakesALargeImpactOfShortCyclesAsItIs) {
+  const std::string rule =
+      "COMPONENT c\nRULE r\n  POLICIES ERROR\n  TRIGGER x > 1\n    STRATEGY s 50 10\n"
+      "      ADAPTATION c restart 5000\n";
+  EXPECT_EQ(codes_of(rule), std::vector<std::string>{"R032"});
+  EXPECT_EQ(codes_of("CYCLE 10ms\n" + rule), std::vector<std::string>());
+}
+
 TEST(Checker, SplitsLaunchCommandsWithoutAShell) {
   const RuleSet rules =
       rules_of("COMPONENT c LAUNCH \"prog --name 'two words' a\\\\ b $HOME ; rm\"\n");

@@ -106,12 +106,37 @@ struct Finding {
   std::string remedy;
 };
 
-// "Active" for "active", 20 for a share of 20 percent; empty: neither.
+// Whether the values of the input are all between 0 and `high`. A deviation may be far smaller.
+bool is_from_0_to(double high, const Input& input, const RuleSet& rules) {
+  switch (input.kind) {
+    case Input::Kind::kLoss:
+      return high == 1;
+    case Input::Kind::kSignal:
+    case Input::Kind::kMin:
+    case Input::Kind::kMax:
+    case Input::Kind::kMean: {
+      const auto& range = rules[input.signal].range;
+      return range && range->low == 0 && range->high == high;
+    }
+    default:
+      return false;
+  }
+}
+
+// A signal is compared with a smaller number rather by another slip: its RANGE may be wrong.
+constexpr double kLeastPercentOfSignal = 5;
+
+// "Active" for "active", 0.2 for a share of 20 percent; empty: neither.
 std::string meant_value(const Typed& comparison, const Input& input, const RuleSet& rules) {
   if (comparison.op == Op::kNot) return meant_value(comparison.children[0], input, rules);
-  if (input.kind == Input::Kind::kLoss) {
+  if (is_from_0_to(1, input, rules)) {
+    const bool is_loss = input.kind == Input::Kind::kLoss;
     for (const double percent : thresholds_of(comparison)) {
-      if (percent > 1 && percent <= 100) return "write " + plain_number(percent / 100);
+      if (percent <= 1 || percent > 100) continue;
+      if (is_loss) return "write " + plain_number(percent / 100);
+      if (percent >= kLeastPercentOfSignal)
+        return "write " + plain_number(percent / 100) + " for " + plain_number(percent) +
+               " percent, or correct the RANGE if the value can be another";
     }
   }
   const auto states = states_of(input, rules);
@@ -303,6 +328,28 @@ void find_wrong_scales(const Typed& e, const RuleSet& rules, std::vector<Diagnos
   }
 }
 
+// Comparisons of a percentage with a number that was meant as a ratio.
+void find_ratios(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
+  const Typed* input = e.type == Type::kBool && !is_connective(e) ? compared_input(e) : nullptr;
+  if (input == nullptr || !is_from_0_to(100, rules[input->input], rules)) {
+    for (const Typed& child : e.children) find_ratios(child, rules, found);
+    return;
+  }
+  for (const double ratio : thresholds_of(e)) {
+    if (ratio <= 0 || ratio >= 1) continue;
+    Facts in_the_middle(rules);
+    in_the_middle.know(input->input, Interval{50, 50});
+    const bool is_mostly_true = in_the_middle.assume(e, true);
+    const std::string percent = plain_number(std::round(ratio * 1e6) / 1e4);
+    found.push_back(
+        {is_mostly_true ? Code::kAlwaysTrueInRange : Code::kNeverTrueInRange, Severity::kWarning,
+         e.span,
+         std::string(is_mostly_true ? "this is nearly always true" : "this is hardly ever true") +
+             known_of(input->input, rules),
+         "if " + percent + " percent are meant, write " + percent});
+  }
+}
+
 // Comparisons with a number, or with true or false, in quotes. The values of a diagnostic are texts.
 void find_quoted_values(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
   for (const Typed& child : e.children) find_quoted_values(child, rules, found);
@@ -351,6 +398,7 @@ void check_compared_values(const RuleConditions& rule, const RuleSet& rules,
                            std::vector<Diagnostic>& diagnostics) {
   find_short_windows(rule.trigger, rules, diagnostics);
   find_wrong_scales(rule.trigger, rules, diagnostics);
+  find_ratios(rule.trigger, rules, diagnostics);
   find_quoted_values(rule.trigger, rules, diagnostics);
 }
 
@@ -445,6 +493,20 @@ void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
                              "' also fires if the process hangs, and none of its strategies "
                              "helps then",
                          "add a strategy with ADAPTATION " + name + " redeploy"});
+}
+
+void check_cooldown(const RuleConditions& rule, const RuleSet& rules,
+                    std::vector<Diagnostic>& diagnostics) {
+  const Rule& checked = rules[rule.rule];
+  const auto last = std::ranges::find_if(checked.strategies,
+                                         [&](StrategyId s) { return rules[s].is_last_resort; });
+  if (checked.policies.cooldown == Duration::zero() || last == checked.strategies.end()) return;
+  diagnostics.push_back(
+      {Code::kLateLastResort, Severity::kWarning, rule.written->policies->cooldown_span,
+       "for " + to_string(checked.policies.cooldown) + " after a resolution, rule '" +
+           checked.name + "' detects nothing, so last resort '" + rules[*last].name +
+           "' may come that much too late",
+       "remove COOLDOWN; FOR or HOLD also keeps the rule from firing too often"});
 }
 
 }  // namespace culprit

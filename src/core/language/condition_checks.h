@@ -51,7 +51,7 @@ void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
                           std::vector<Diagnostic>& diagnostics);
 
 // Values that a trigger compares with and that were hardly meant: a rate of less than one message
-// within its window, percent of a core, bytes for MiB, a number in quotes.
+// within its window, percent of a core, a ratio for a percentage, bytes for MiB, a number in quotes.
 void check_compared_values(const RuleConditions& rule, const RuleSet& rules,
                            std::vector<Diagnostic>& diagnostics);
 
@@ -59,5 +59,9 @@ void check_compared_values(const RuleConditions& rule, const RuleSet& rules,
 // though there is a LAUNCH command.
 void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
                        std::vector<Diagnostic>& diagnostics);
+
+// A last resort that the rule's own COOLDOWN delays.
+void check_cooldown(const RuleConditions& rule, const RuleSet& rules,
+                    std::vector<Diagnostic>& diagnostics);
 
 }  // namespace culprit

@@ -47,6 +47,7 @@ enum class Code : std::uint16_t {
   kShortImpact = 35,
   kShortWindow = 36,
   kLongWindow = 37,
+  kLateLastResort = 38,
   // Rules that cannot work
   kContradiction = 40,
   kNoLaunch = 41,

@@ -44,6 +44,7 @@ bool exists(Code code) {
     case Code::kShortImpact:
     case Code::kShortWindow:
     case Code::kLongWindow:
+    case Code::kLateLastResort:
     case Code::kContradiction:
     case Code::kNoLaunch:
     case Code::kNeverValid:

@@ -14,6 +14,9 @@ namespace {
 
 // No node is there, discovered and at work, in less.
 constexpr Duration kFastestStart = std::chrono::milliseconds(400);
+// An impact of so many cycles that takes so long was given in milliseconds.
+constexpr std::int64_t kMilliseconds = 5000;
+constexpr Duration kSlowestEffect = std::chrono::minutes(5);
 
 bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
   // Most differ in their length: asked first, it spares the call that compares their letters.
@@ -105,6 +108,35 @@ std::optional<Edit> with_setup(const syntax::Component& written,
   return Edit{written.launch->span, "\"" + text.substr(first) + "\" SETUP " + command[1]};
 }
 
+Duration impact_of(const syntax::Adaptation& a, const RuleSet& rules) {
+  return duration_of(Cycles{static_cast<std::int64_t>(a.impact.value)}, rules);
+}
+
+void check_short_impact(const syntax::Adaptation& a, const RuleSet& rules,
+                        std::vector<Diagnostic>& diagnostics) {
+  const bool starts = a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart;
+  const Duration given = impact_of(a, rules);
+  if (!starts || given >= kFastestStart) return;
+  diagnostics.push_back(
+      {Code::kShortImpact, Severity::kWarning, a.impact.span,
+       "an impact of " + to_string(given) + " is over before a process is at work again",
+       "count the cycles of " + to_string(rules.cycle) +
+           " from the start of its node until the failure is cleared: 10 and more are usual"});
+}
+
+void check_long_impact(const syntax::Adaptation& a, const RuleSet& rules,
+                       std::vector<Diagnostic>& diagnostics) {
+  const auto count = static_cast<std::int64_t>(a.impact.value);
+  const Duration given = impact_of(a, rules);
+  if (count < kMilliseconds || given < kSlowestEffect) return;
+  const std::int64_t meant =
+      std::max<std::int64_t>(1, std::chrono::milliseconds(count) / rules.cycle);
+  diagnostics.push_back({Code::kImpactRange, Severity::kWarning, a.impact.span,
+                         "an impact counts cycles, and " + std::to_string(count) +
+                             " of them take " + to_string(given),
+                         "if these are milliseconds, write " + std::to_string(meant)});
+}
+
 // Calls `take` with the first argument of each call of one of `functions` in `e`.
 void for_each_argument(const syntax::Expression& e,
                        std::initializer_list<std::string_view> functions,
@@ -158,18 +190,12 @@ std::set<std::string_view> names_of_values(const syntax::File& file) {
 
 }  // namespace
 
-void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
-                         std::vector<Diagnostic>& diagnostics) {
+void check_impacts(const syntax::Rule& rule, const RuleSet& rules,
+                   std::vector<Diagnostic>& diagnostics) {
   for (const syntax::Strategy& strategy : rule.strategies) {
     for (const syntax::Adaptation& a : strategy.adaptations) {
-      const bool starts = a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart;
-      const Duration given = duration_of(Cycles{static_cast<std::int64_t>(a.impact.value)}, rules);
-      if (!starts || given >= kFastestStart) continue;
-      diagnostics.push_back(
-          {Code::kShortImpact, Severity::kWarning, a.impact.span,
-           "an impact of " + to_string(given) + " is over before a process is at work again",
-           "count the cycles of " + to_string(rules.cycle) +
-               " from the start of its node until the failure is cleared: 10 and more are usual"});
+      check_short_impact(a, rules, diagnostics);
+      check_long_impact(a, rules, diagnostics);
     }
   }
 }

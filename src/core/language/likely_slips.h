@@ -9,9 +9,10 @@
 
 namespace culprit {
 
-// An adaptation that starts a process and counts on less time than any process takes.
-void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
-                         std::vector<Diagnostic>& diagnostics);
+// An adaptation that starts a process and counts on less time than any process takes; an impact in
+// milliseconds.
+void check_impacts(const syntax::Rule& rule, const RuleSet& rules,
+                   std::vector<Diagnostic>& diagnostics);
 
 // A statement for the whole file, such as INTERLOCK, that stands among the lines of a rule.
 void check_settings_in_rules(const syntax::File& file, std::vector<Diagnostic>& diagnostics);

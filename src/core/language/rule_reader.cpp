@@ -109,6 +109,7 @@ bool RuleReader::policy(Scanner& s, syntax::Policies& policies) {
   }
   if (clause.text == "COOLDOWN" && !policies.cooldown) {
     policies.cooldown = read_.positive_duration(s, "the quiet time after a resolution");
+    policies.cooldown_span = clause.span;
     return policies.cooldown.has_value();
   }
   if (clause.text == "HOLD" && !policies.hold) {

@@ -199,6 +199,7 @@ struct Policies {
   };
   std::optional<Hold> hold;
   std::optional<Duration> cooldown;
+  Span cooldown_span;  // of the word
   struct Attempts {
     std::int64_t count = 0;
     Span span;
