@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "base/closest.h"
 #include "base/ros_names.h"
@@ -178,8 +179,10 @@ void check_containers(const syntax::File& file, const RuleSet& rules,
   std::size_t comparisons_left = Symbols::kMaxComparisons;
   std::vector<std::string_view> nodes;
   std::unordered_map<std::string_view, const Component*> by_node;  // the first
+  std::unordered_set<std::string_view> without_node;               // names
   for (const Component& component : rules.components) {
     if (!component.node.empty() && !component.composed) nodes.push_back(component.node);
+    if (component.declared && component.node.empty()) without_node.insert(component.name);
     by_node.emplace(component.node, &component);
     for (const std::string& other : component.other_nodes) by_node.emplace(other, &component);
   }
@@ -189,7 +192,13 @@ void check_containers(const syntax::File& file, const RuleSet& rules,
     if (!written.container || !rules.components[i].composed) continue;
     const std::string& container = written.container->text;
     const auto other = by_node.find(container);
-    if (other == by_node.end()) {
+    if (other == by_node.end() && without_node.contains(own_name(container))) {
+      const std::string name = own_name(container);
+      diagnostics.push_back(
+          {Code::kNoContainer, Severity::kWarning, written.container->span,
+           "component '" + name + "' has no NODE, so culprit cannot know that it is this container",
+           "write NODE " + container + " on the line of COMPONENT " + name});
+    } else if (other == by_node.end()) {
       const bool is_compared = nodes.size() <= comparisons_left;
       if (is_compared) comparisons_left -= nodes.size();
       const std::string near = is_compared ? closest_full_name(container, nodes) : "";
