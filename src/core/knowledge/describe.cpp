@@ -29,7 +29,9 @@ class Describer {
   std::string operator()(const FailureResolved& e) const {
     const std::string after = " after " + two_decimals(seconds(e.reaction)) + " s";
     if (e.strategy) return rules_[e.rule].name + " resolved by " + rules_[*e.strategy].name + after;
-    return rules_[e.rule].name + " cleared without a repair of its own" + after;
+    const Rule& rule = rules_[e.rule];
+    return rule.name + " cleared" +
+           (rule.strategies.empty() ? "" : " without a repair of its own") + after;
   }
   std::string operator()(const FailureLost& e) const {
     return rules_[e.rule].name +

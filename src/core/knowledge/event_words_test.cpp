@@ -34,6 +34,21 @@ TEST(EventWords, WhatIsRequiredAndNotThereIsAnError) {
   EXPECT_EQ(severity_of({{}, ComponentFound{base, 1}}, rules), EventSeverity::kInfo);
 }
 
+TEST(EventWords, ARuleThatOnlyReportsLacksNoRepair) {
+  const RuleSet rules = *check(Source("test",
+                                      "RULE Low\n  POLICIES ERROR REPORT\n  TRIGGER x > 1\n"
+                                      "RULE High\n  POLICIES ERROR\n  TRIGGER y > 1\n"
+                                      "    STRATEGY s 90 10\n      ADAPTATION c restart 5\n"))
+                             .rules;
+  const auto cleared = [&](std::uint32_t rule) {
+    FailureResolved how{RuleId(rule), FailureResolved::How::kWithoutStrategy, std::nullopt,
+                        std::chrono::seconds(2)};
+    return describe({{}, how}, rules);
+  };
+  EXPECT_EQ(cleared(0), "Low cleared after 2.00 s");
+  EXPECT_EQ(cleared(1), "High cleared without a repair of its own after 2.00 s");
+}
+
 TEST(EventWords, NameTheOwnerThatStartsAndEnds) {
   const RuleSet rules = *check(Source("test",
                                       "COMPONENT own NODE /own LAUNCH \"own\"\n"

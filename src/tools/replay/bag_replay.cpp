@@ -123,7 +123,7 @@ Duration BagReplay::counted(Time from, Time until) const {
   return until > begin ? until - begin : Duration::zero();
 }
 
-// A failure is told to be over a little after its trigger stopped being true.
+// When its trigger stopped being true, if it did. The failure is reported as cleared a little later.
 std::optional<Time> BagReplay::trigger_over(RuleId rule) const {
   const Detection& detection = manager_->knowledge().states[rule].detection;
   const bool is_over = !detection.trigger.known || !detection.trigger.b;
@@ -133,8 +133,10 @@ std::optional<Time> BagReplay::trigger_over(RuleId rule) const {
 void BagReplay::end_failure(RuleId rule, Time at) {
   State& state = states_[rule.index];
   if (!std::exchange(state.is_on, false)) return;
-  const Time gone = std::min(at, trigger_over(rule).value_or(at));
-  if (state.on_since) state.lasted += counted(*state.on_since, gone);
+  // As long as the report of its end says, unless it was not seen again after a pause.
+  const auto over = trigger_over(rule);
+  const bool was_seen = state.on_since && (!over || *over > *state.on_since);
+  if (was_seen) state.lasted += counted(*state.on_since, at);
   state.on_since.reset();
   state.outcome.longest = std::max(state.outcome.longest, state.lasted);
   state.outcome.total += state.lasted;
