@@ -85,11 +85,20 @@ std::string time_until(Time at, Time now) {
   return tenths % 10 == 0 ? seconds + " s" : seconds + "." + std::to_string(tenths % 10) + " s";
 }
 
+std::string outcome_of_exhausted(RuleId rule, const Knowledge& knowledge) {
+  if (knowledge.rules[rule].strategies.empty()) return "its rule only reports";
+  const bool is_tried = knowledge.states[rule].search.attempts > 0;
+  return is_tried ? "nothing helped" : "nothing could be tried";
+}
+
 std::string next_of_exhausted(RuleId rule, const Knowledge& knowledge) {
   const auto& strategies = knowledge.rules[rule].strategies;
   const auto next =
       std::ranges::find_if(strategies, [&](StrategyId id) { return knowledge.goes_on(id); });
-  if (next == strategies.end()) return "nothing more is tried: a person must look";
+  if (next == strategies.end()) {
+    const bool is_tried = knowledge.states[rule].search.attempts > 0;
+    return is_tried ? "nothing more is tried: a person must look" : "a person must look";
+  }
   if (!knowledge.only_starts_the_gone(knowledge.rules[*next]))
     return "a person must look; " + knowledge.rules[*next].name +
            " is tried once its WHEN condition is true";
@@ -97,8 +106,17 @@ std::string next_of_exhausted(RuleId rule, const Knowledge& knowledge) {
          time_until(knowledge.states[rule].search.retry_at, knowledge.now);
 }
 
-// The next step for a failure that is being repaired, and its time.
+// Empty: nobody ended its components.
+std::string why_it_stays_down(const Incident& incident, const Knowledge& knowledge) {
+  for (const ComponentId c : incident.components) {
+    const auto departure = knowledge.departures.of(c, knowledge.now);
+    if (departure && departure->what == Departures::What::kStaysDown)
+      return describe(*departure, knowledge.rules[c].name) + "; culprit revive starts it again";
+  }
+  return "";
+}
 
+// The next step for a failure that is being repaired, and its time.
 std::string next_of(RuleId rule, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   const RuleState& state = knowledge.states[rule];
@@ -304,9 +322,10 @@ Incidents::Course Incidents::course_of(const Incident& incident, const Knowledge
   const Failure& root = of(incident.root);
   const RulePhase phase = knowledge.states[incident.root].phase;
   const std::string actions = root.blamed ? actions_of(rules[*root.blamed], rules) : "";
-  std::string doing = "nothing is done yet";
+  const std::string down = why_it_stays_down(incident, knowledge);
+  std::string doing = down.empty() ? "nothing is done yet" : "not repaired: " + down;
   if (phase == RulePhase::kExhausted) {
-    doing = "nothing helped";
+    doing = outcome_of_exhausted(incident.root, knowledge);
   } else if (halt == Halt::kDeaf) {
     return {"nothing is judged or done: culprit does not receive the robot's messages", ""};
   } else if (halt == Halt::kPaused) {

@@ -130,6 +130,36 @@ TEST(Incidents, SaysWhatComesNextAndWhen) {
   EXPECT_EQ(watched.course().next, "nothing more is tried: a person must look");
 }
 
+TEST(Incidents, SayThatAPersonEndedItAlsoBeforeAnythingIsDecided) {
+  Watched watched;
+  TestRobot& robot = *watched.robot;
+  robot.leave("camera");
+  robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kGone, robot["camera"].pid,
+                         "killed by signal 2", Cause::kOrder},
+             20s);
+  ASSERT_FALSE(watched.incidents().empty());
+  ASSERT_EQ(watched.incidents()[0].components, std::vector{ComponentId(0)});
+  const Incidents undecided{IncidentIds{}};
+  EXPECT_THAT(
+      undecided
+          .course_of(watched.incidents()[0], robot.manager().knowledge(), Incidents::Halt::kNone)
+          .doing,
+      AllOf(testing::StartsWith("not repaired: camera ended"),
+            HasSubstr("; culprit revive starts it again")));
+}
+
+TEST(Incidents, DoNotSayThatNothingHelpedWhereNothingWasTried) {
+  TestRobot robot("RULE Low\n  POLICIES ERROR REPORT\n  TRIGGER battery < 0.2\n",
+                  std::make_unique<BayesPlanner>(), Manager::Options{});
+  robot.discover();
+  for (int i = 0; i < 5; ++i) robot.signal("battery", Value(0.1), 1s);
+  const auto& open = robot.manager().incidents().open();
+  ASSERT_EQ(open.size(), 1u);
+  const Incidents::Course course = robot.manager().course_of(open[0]);
+  EXPECT_EQ(course.doing, "its rule only reports");
+  EXPECT_EQ(course.next, "a person must look");
+}
+
 TEST(Incidents, TellsTwoFaultsApartWorstFirst) {
   Watched watched;
   watched.robot->signal("brightness", Value(0.1));
