@@ -39,7 +39,9 @@ link::Health of_rule(RuleId id, const Knowledge& knowledge) {
       break;
     case RulePhase::kExhausted:
       health.level = kError;
-      health.message = "nothing helped; a person must look";
+      health.message = rule.strategies.empty()     ? "a person must look"
+                       : state.search.attempts > 0 ? "nothing helped; a person must look"
+                                                   : "nothing could be tried; a person must look";
       break;
   }
   health.values.emplace_back("attempts", std::to_string(state.search.attempts));

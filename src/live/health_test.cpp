@@ -100,7 +100,7 @@ TEST(HealthReport, ErrsWhileCulpritIsDeafAndCallsNothingWell) {
             "culprit does not receive the robot's messages; nothing is judged or done");
   EXPECT_EQ(all[1].level, 1);
   EXPECT_EQ(all[1].message, "not judged: culprit does not receive the robot's messages");
-  EXPECT_EQ(all[2].message, "nothing helped; a person must look");
+  EXPECT_EQ(all[2].message, "nothing could be tried; a person must look");
 }
 
 TEST(HealthReport, WarnsOfABlindRule) {

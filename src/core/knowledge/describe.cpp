@@ -104,13 +104,18 @@ class Describer {
     return e.succeeded ? e.what + " again" : "cannot be undone: " + e.what;
   }
   std::string operator()(const RoundSpent& e) const {
-    return rules_[e.rule].name +
+    const Rule& rule = rules_[e.rule];
+    if (const auto only = only_last_resorts(rule); !only.empty()) return rule.name + " has " + only;
+    return rule.name +
            ": each strategy has been tried lately; they are tried again after a back-off";
   }
   std::string operator()(const RuleExhausted& e) const {
     const Rule& rule = rules_[e.rule];
     if (rule.strategies.empty()) return rule.name + " only reports; a person must look";
-    return rule.name + " is exhausted: nothing helped, a person must look";
+    const std::string only = only_last_resorts(rule);
+    return rule.name + " is exhausted: " +
+           (only.empty() ? "nothing helped, a person must look"
+                         : "it has " + only + ", and a person must look");
   }
   std::string operator()(const LastResortReached& e) const {
     return rules_[e.rule].name +
@@ -303,6 +308,13 @@ class Describer {
     for (const StrategyId id : last_resorts) names.push_back(with_rule(id));
     return last_resorts.size() == 1 ? "; this holds back the last resort " + names.front()
                                     : "; this holds back the last resorts " + listed(names);
+  }
+  // Empty: it has strategies that repair something, or none at all.
+  std::string only_last_resorts(const Rule& rule) const {
+    const auto is_last = [this](StrategyId s) { return rules_[s].is_last_resort; };
+    if (rule.strategies.empty() || !std::ranges::all_of(rule.strategies, is_last)) return "";
+    return rule.strategies.size() == 1 ? "no strategy besides its last resort"
+                                       : "no strategies besides its last resorts";
   }
   std::string name_of(const Silenceable& what) const {
     if (const auto* rule = std::get_if<RuleId>(&what))

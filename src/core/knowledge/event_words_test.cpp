@@ -49,6 +49,20 @@ TEST(EventWords, ARuleThatOnlyReportsLacksNoRepair) {
   EXPECT_EQ(cleared(1), "High cleared without a repair of its own after 2.00 s");
 }
 
+// Nothing was tried that could have helped.
+TEST(EventWords, ARuleWithNothingButALastResortTriesNothing) {
+  const RuleSet rules = *check(Source("test",
+                                      "RULE Lost\n  POLICIES ERROR\n  TRIGGER x > 1\n"
+                                      "    STRATEGY halt 90 10 LASTRESORT\n"
+                                      "      ADAPTATION base deactivate 5\n"))
+                             .rules;
+  EXPECT_EQ(describe({{}, RoundSpent{RuleId(0), {}}}, rules),
+            "Lost has no strategy besides its last resort");
+  EXPECT_EQ(
+      describe({{}, RuleExhausted{RuleId(0)}}, rules),
+      "Lost is exhausted: it has no strategy besides its last resort, and a person must look");
+}
+
 TEST(EventWords, NameTheOwnerThatStartsAndEnds) {
   const RuleSet rules = *check(Source("test",
                                       "COMPONENT own NODE /own LAUNCH \"own\"\n"
