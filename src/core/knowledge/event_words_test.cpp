@@ -49,6 +49,16 @@ TEST(EventWords, ARuleThatOnlyReportsLacksNoRepair) {
   EXPECT_EQ(cleared(1), "High cleared without a repair of its own after 2.00 s");
 }
 
+TEST(EventWords, NameTheSignalThatBringsNoNewValue) {
+  const auto stale = [](const std::string& input) {
+    return describe(Blind{Time(), Unseen::kStale, input, ""});
+  };
+  EXPECT_EQ(stale("battery"), "no new value of battery comes");
+  EXPECT_EQ(stale("changed(m)"), "no new value of m comes");
+  EXPECT_EQ(stale("mean(battery, 10s)"), "no new value of battery comes");
+  EXPECT_EQ(stale("parameter(camera, gain)"), "no new value of parameter(camera, gain) comes");
+}
+
 // Nothing was tried that could have helped.
 TEST(EventWords, ARuleWithNothingButALastResortTriesNothing) {
   const RuleSet rules = *check(Source("test",
