@@ -233,7 +233,9 @@ bool BagFile::is_usable(BagMessage& message) {
       return false;
     }
     message.bytes = decompressed_;
-  } else if (message.bytes.empty() || message.bytes[0] != '\0') {
+  } else if (message.bytes.empty()) {
+    contents_->lose_message("without content: only their times are used");
+  } else if (message.bytes[0] != '\0') {
     contents_->lose_message("neither in CDR nor compressed with zstd: only their times are used");
   }
   return true;

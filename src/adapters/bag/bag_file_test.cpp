@@ -42,8 +42,9 @@ Read read(const fs::path& path, BagFile::Limits limits = {}) {
   Read all;
   BagFile bag = value_of(BagFile::open(path, limits));
   for (BagMessage message; bag.next(message);)
-    all.messages.push_back(bag.contents().topics()[message.topic].name + "@" +
-                           std::to_string(message.at) + "=" + std::string(message.bytes.substr(4)));
+    all.messages.push_back(
+        bag.contents().topics()[message.topic].name + "@" + std::to_string(message.at) + "=" +
+        std::string(message.bytes.substr(std::min<std::size_t>(4, message.bytes.size()))));
   all.losses = bag.contents().losses();
   all.out_of_order = bag.out_of_order();
   return all;
@@ -207,16 +208,17 @@ TEST_F(BagTest, APipeInAFolderIsNoPart) {
 }
 
 TEST_F(BagTest, MessagesThatCannotBeAreCounted) {
-  const Read all =
-      read(write("a.mcap", mcap(two_topics() + said(7, 10, "whose?") +
-                                    said(1, std::uint64_t{1} << 63, "when?") +
-                                    message(1, 20, "\x04\x22lz4") + test::record(0x05, "short"),
-                                4)));
-  EXPECT_EQ(all.messages.size(), 1);
+  const Read all = read(write(
+      "a.mcap",
+      mcap(two_topics() + said(7, 10, "whose?") + said(1, std::uint64_t{1} << 63, "when?") +
+               message(1, 20, "\x04\x22lz4") + message(1, 21, "") + test::record(0x05, "short"),
+           5)));
+  EXPECT_EQ(all.messages.size(), 2);
   EXPECT_THAT(all.losses, ElementsAre(HasSubstr("1 message cut short"),
                                       HasSubstr("1 message neither in CDR nor compressed"),
                                       HasSubstr("1 message of a topic"),
-                                      HasSubstr("1 message with a time that cannot be")));
+                                      HasSubstr("1 message with a time that cannot be"),
+                                      HasSubstr("1 message without content")));
 }
 
 TEST_F(BagTest, APartThatCannotBeReadDoesNotHideTheOthers) {
