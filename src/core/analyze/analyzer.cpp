@@ -495,7 +495,7 @@ void Analyzer::fail(RuleId id, Time now) {
                              : state.detection.trigger.known
                                  ? "the failure is still there"
                                  : "it is unknown whether the failure is still there";
-  // What may have helped stays.
+  // A strategy that may have helped is not undone.
   const bool is_unknown = attempt.obstacle.empty() && !state.detection.trigger.known;
   attempt.stage = is_unknown ? Attempt::Stage::kOver : Attempt::Stage::kUndoing;
   write_.events.tell(now, StrategyFailed{attempt.strategy, reason});

@@ -47,7 +47,7 @@ Time DueVerdicts::deadline(const Attempt& attempt) const {
   return later(given, knowledge_.signals.latency(id));
 }
 
-// What it has changed is gone or stopped, so nothing more is to be seen of it.
+// A process that it has changed is gone or stopped, so nothing more is to be seen of it.
 bool DueVerdicts::has_lost_a_process(const Attempt& attempt) const {
   const auto& adaptations = knowledge_.rules[attempt.strategy].adaptations;
   return std::ranges::any_of(adaptations, [&](const Adaptation& each) {

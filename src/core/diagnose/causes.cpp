@@ -431,7 +431,7 @@ bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledg
 bool Causes::may_be_effect(std::size_t silent, std::size_t i, const Reach& reach,
                            const Knowledge& knowledge) const {
   const CauseNode& node = nodes_[silent];
-  // That a component is not active is no effect of data. While a rule may still fire that mends the silent one, this is the likelier.
+  // No data keeps a component inactive. While a rule may still fire that mends the silent one, this is the likelier.
   const Onset& onset = nodes_[i].onset;
   const bool may_be_mended =
       knowledge.now < later(node.onset.latest, kLongestPlainEvidence) &&

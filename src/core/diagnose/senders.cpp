@@ -41,8 +41,7 @@ std::vector<bool> all_that_send(const Knowledge& knowledge) {
     const TopicId topic(t);
     if (!knowledge.signals.rhythm(topic).last || is_silent(topic, knowledge.now, knowledge))
       continue;
-    if (const auto sender = knowledge.graph.only_publisher(rules[topic]))
-      all[sender->index] = true;
+    if (const auto sender = knowledge.graph.only_publisher(rules[topic])) all[sender->index] = true;
   }
   for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
     const InputId id(i);

@@ -59,7 +59,7 @@ inline constexpr Cycles kPassing{5};
 
 // Is the topic silent at `now` for longer than it usually is? Not while its rhythm is unknown.
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
-// Of one that is silent. It may have become slow before.
+// The onset of the silence of one that is silent, which may have become slow before.
 Onset onset_of_silence(const SignalStore::Rhythm& rhythm);
 
 // By component: when the last message came on a topic that it alone publishes; kLongAgo: none did.

@@ -183,7 +183,7 @@ bool Limits::is_silent_since_its_start(ComponentId component, RuleId rule) const
   return !reads_any && last != kLongAgo && last < begun;
 }
 
-// What is being started is not begun anew within its READY.
+// A component that is being started is not begun anew within its READY.
 std::optional<Limits::Limit> Limits::start(ComponentId component, RuleId rule, Time now) const {
   const Duration ready = knowledge_.rules[component].ready;
   if (ready == Duration::zero() || knowledge_.components[component].alive == false ||

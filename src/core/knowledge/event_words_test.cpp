@@ -59,7 +59,7 @@ TEST(EventWords, NameTheSignalThatBringsNoNewValue) {
   EXPECT_EQ(stale("parameter(camera, gain)"), "no new value of parameter(camera, gain) comes");
 }
 
-// Nothing was tried that could have helped.
+// No strategy was tried that could have helped.
 TEST(EventWords, ARuleWithNothingButALastResortTriesNothing) {
   const RuleSet rules = *check(Source("test",
                                       "RULE Lost\n  POLICIES ERROR\n  TRIGGER x > 1\n"
