@@ -301,6 +301,8 @@ void Origins::note(const GuidPrefix& participant, const Proven& proven, const Ud
     const auto foreign = proven.foreign.find(from);
     if (foreign == proven.foreign.end()) return;  // it is reported once its socket was looked up
     source.user = foreign->second.user;
+    // The last datagrams of a participant of this process arrive after it closed its sockets.
+    if (proven.pid == getpid() && !source.user) return;
   }
   note(source);
 }

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <unistd.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -203,6 +204,24 @@ TEST_F(OriginsOfAMachine, APortThatItGaveUpIsNotItsAnyMore) {
 }
 
 // Every participant has the port for multicast, and so may a stranger.
+// A survey of culprit's own has just ended.
+TEST_F(OriginsOfAMachine, WhatThisProcessSentBeforeItClosedASocketAccusesNobody) {
+  const int own = getpid();
+  machine.run(own, 3000);
+  machine.open(own, kAny, 40'100);
+  const int closed = machine.open(own, kAny, 40'101);
+  const std::array spoke_from = {UdpAddress{kOwn, 40'101}};
+  origins.prove(lidar(), own, spoke_from);
+  machine.close(own, closed);
+  origins.check(later(kStart, 1s));
+  EXPECT_FALSE(counts({kOwn, 40'101}, later(kStart, 1s), lidar()));
+  EXPECT_THAT(origins.new_sources(), IsEmpty());
+  machine.open(kStranger, kAny, 40'102, 1000);
+  EXPECT_FALSE(counts({kOwn, 40'102}, later(kStart, 3s), lidar()));
+  EXPECT_THAT(origins.new_sources(),
+              ElementsAre(ForeignSource{{kOwn, 40'102}, 1000u, lidar(), own}));
+}
+
 TEST_F(OriginsOfAMachine, APortThatItSharesSaysNothing) {
   machine.open(kPid, kAny, 7400);
   machine.open(kStranger, kAny, 7400);
