@@ -156,7 +156,7 @@ class Ekf final : public RoverNode {
  private:
   void set_up() override {
     offer(tf_, "/tf", {.depth = 100});
-    hear<msg::Odometry>("/hardware/wheels", ros2::qos::kSensorData,
+    hear<msg::Odometry>("/hardware/wheels", rtps::qos::kSensorData,
                         [this](const msg::Odometry& wheels) {
                           const msg::Twist& twist = wheels.twist.twist;
                           pose_ = moved(pose_, twist.linear.x, twist.angular.z, 0.05);

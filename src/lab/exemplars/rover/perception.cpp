@@ -19,8 +19,8 @@ class CloudMaker final : public RoverNode {
   static constexpr std::uint32_t kFiner = 4;
 
   void set_up() override {
-    offer(cloud_, "/points", ros2::qos::kSensorData);
-    hear<ros2::msg::Image>("/camera/image_raw", ros2::qos::kSensorData,
+    offer(cloud_, "/points", rtps::qos::kSensorData);
+    hear<ros2::msg::Image>("/camera/image_raw", rtps::qos::kSensorData,
                            [this](const ros2::msg::Image& image) {
                              if (has("stall")) return;
                              cloud_->publish(cloud_of(image));
