@@ -7,6 +7,7 @@
 #include "rca_study/campaign_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace culprit;
   using namespace culprit::study::rca;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const Json json = parse_json(text);

@@ -19,7 +19,7 @@ std::string sealed(const std::string& text) {
   std::istringstream in(text);
   std::string out;
   for (std::string line; std::getline(in, line);) {
-    const auto json = parse_json(line);
+    const auto json = culprit::parse_json(line);
     out += json.is_object() && !json.empty() ? sealed_line(json) : line + "\n";
   }
   return out;
